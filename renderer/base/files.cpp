@@ -1,0 +1,105 @@
+#include "base/files.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "base/error.h"
+
+namespace lumi {
+namespace fs = std::filesystem;
+namespace {
+
+template <class Buffer>
+Buffer readAll(const fs::path& path, uint64_t limitBytes) {
+    std::error_code failure;
+    const fs::file_status status = fs::status(path, failure);
+    if (!fs::exists(status)) throwBadInput({"no such file", path.string(), "", ""});
+    if (fs::is_directory(status)) throwBadInput({"is a directory", path.string(), "a file", ""});
+    if (!fs::is_regular_file(status)) throwBadInput({"is not a regular file", path.string(), "a file", ""});
+    const uint64_t size = fs::file_size(path, failure);
+    if (failure) throwBadInput({"cannot be read (" + failure.message() + ")", path.string(), "", ""});
+    if (size > limitBytes)
+        throwBadInput({"file is too large", path.string(), fmt::format("at most {} bytes", limitBytes),
+                       fmt::format("{} bytes", size)});
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throwBadInput({std::string("cannot be opened (") + std::strerror(errno) + ")", path.string(), "", ""});
+    Buffer bytes;
+    bytes.resize(size);
+    file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+    bytes.resize(static_cast<size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+    return bytes;
+}
+
+[[noreturn]] void throwWriteError(const fs::path& path, int code) {
+    const ErrorKind kind = code == ENOSPC || code == EDQUOT ? ErrorKind::Resources : ErrorKind::Usage;
+    throw Error(kind, {std::string("cannot be written (") + std::strerror(code) + ")", path.string(), "", ""});
+}
+
+}  // namespace
+
+std::vector<uint8_t> readFile(const fs::path& path, uint64_t limitBytes) {
+    return readAll<std::vector<uint8_t>>(path, limitBytes);
+}
+
+std::string readTextFile(const fs::path& path, uint64_t limitBytes) { return readAll<std::string>(path, limitBytes); }
+
+void writeFileAtomically(const fs::path& path, std::span<const uint8_t> bytes) {
+    std::error_code failure;
+    if (path.has_parent_path()) fs::create_directories(path.parent_path(), failure);
+    const fs::path temporary = path.string() + fmt::format(".{}.tmp", getpid());
+    const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (file < 0) throwWriteError(path, errno);
+    size_t written = 0;
+    while (written < bytes.size()) {
+        const ssize_t count = ::write(file, bytes.data() + written, bytes.size() - written);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) {
+            const int code = errno;
+            ::close(file);
+            ::unlink(temporary.c_str());
+            throwWriteError(path, code);
+        }
+        written += static_cast<size_t>(count);
+    }
+    if (::close(file) != 0 || ::rename(temporary.c_str(), path.c_str()) != 0) {
+        const int code = errno;
+        ::unlink(temporary.c_str());
+        throwWriteError(path, code);
+    }
+}
+
+void writeFileAtomically(const fs::path& path, std::string_view text) {
+    writeFileAtomically(path, std::span(reinterpret_cast<const uint8_t*>(text.data()), text.size()));
+}
+
+fs::path unusedPath(const fs::path& path) {
+    if (!fs::exists(path)) return path;
+    for (int number = 1;; ++number) {
+        const fs::path candidate =
+            path.parent_path() / fmt::format("{}-{}{}", path.stem().string(), number, path.extension().string());
+        if (!fs::exists(candidate)) return candidate;
+    }
+}
+
+std::string lowerExtension(const fs::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+uint64_t digest64(std::span<const uint8_t> bytes, uint64_t seed) {
+    return XXH3_64bits_withSeed(bytes.data(), bytes.size(), seed);
+}
+
+std::string digest(std::span<const uint8_t> bytes) { return fmt::format("{:016x}", digest64(bytes)); }
+
+}  // namespace lumi

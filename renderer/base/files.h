@@ -1,0 +1,30 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lumi {
+
+/// Whole contents of a file. Throws Error(BadInput): missing, a directory, unreadable, or larger than `limitBytes`.
+std::vector<uint8_t> readFile(const std::filesystem::path& path, uint64_t limitBytes = uint64_t(4) << 30);
+std::string readTextFile(const std::filesystem::path& path, uint64_t limitBytes = uint64_t(1) << 30);
+
+/// Writes to a temporary file beside `path`, then renames: a reader sees the old contents or the new, never a part.
+/// Creates the folder if needed. Throws Error(Resources) if the disk is full, Error(Usage) if the path is not writable.
+void writeFileAtomically(const std::filesystem::path& path, std::span<const uint8_t> bytes);
+void writeFileAtomically(const std::filesystem::path& path, std::string_view text);
+
+/// `path`, or `stem-1.ext`, `stem-2.ext`, ... : the first that does not exist.
+std::filesystem::path unusedPath(const std::filesystem::path& path);
+
+/// Lower-case extension with its dot, ".exr".
+std::string lowerExtension(const std::filesystem::path& path);
+
+/// 64-bit content digest (XXH3) as 16 hexadecimal digits.
+std::string digest(std::span<const uint8_t> bytes);
+uint64_t digest64(std::span<const uint8_t> bytes, uint64_t seed = 0);
+
+}  // namespace lumi

@@ -1,0 +1,78 @@
+#include "base/memory.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+
+#include "base/error.h"
+
+namespace lumi {
+namespace {
+
+uint64_t machineBytes() {
+    return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+std::atomic<uint64_t>& limit() {
+    static std::atomic<uint64_t> bytes{machineBytes() / 4 * 3};
+    return bytes;
+}
+
+}  // namespace
+
+void setMemoryLimit(uint64_t bytes) { limit() = bytes; }
+uint64_t memoryLimit() { return limit(); }
+
+void checkMemory(const std::string& what, uint64_t bytes) {
+    const uint64_t used = residentBytes();
+    if (bytes <= memoryLimit() && used <= memoryLimit() - bytes) return;
+    throw Error(ErrorKind::Resources,
+                {fmt::format("{} needs {}, which passes the memory limit of {} ({} in use)", what, formatBytes(bytes),
+                             formatBytes(memoryLimit()), formatBytes(used)),
+                 "", "", ""});
+}
+
+uint64_t residentBytes() {
+    long pages = 0;
+    if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
+        long total = 0;
+        if (std::fscanf(file, "%ld %ld", &total, &pages) != 2) pages = 0;
+        std::fclose(file);
+    }
+    return static_cast<uint64_t>(pages) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+uint64_t peakResidentBytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string formatBytes(uint64_t bytes) {
+    const char* units[] = {"B", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
+    double value = static_cast<double>(bytes);
+    int unit = 0;
+    while (value >= 1024 && unit < 6) value /= 1024, ++unit;
+    return unit == 0 ? fmt::format("{} B", bytes) : fmt::format("{:.1f} {}", value, units[unit]);
+}
+
+uint64_t parseBytes(const std::string& text) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    std::string unit = end;
+    double scale = -1;
+    if (unit == "%") scale = static_cast<double>(machineBytes()) / 100;
+    if (unit == "" || unit == "B") scale = 1;
+    if (unit == "K" || unit == "KB" || unit == "KiB") scale = 1024.0;
+    if (unit == "M" || unit == "MB" || unit == "MiB") scale = 1024.0 * 1024;
+    if (unit == "G" || unit == "GB" || unit == "GiB") scale = 1024.0 * 1024 * 1024;
+    if (end == text.c_str() || scale < 0 || !(value > 0) || !(value * scale < 9e18))
+        throwUsage({"not a size", "", "a number with K, M, G or %", '"' + text + '"'});
+    return static_cast<uint64_t>(value * scale);
+}
+
+}  // namespace lumi

@@ -1,0 +1,39 @@
+#pragma once
+#include <functional>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace lumi {
+
+enum class Severity { Info, Warning, Error };
+
+struct Message {
+    Severity severity = Severity::Info;
+    std::string text;
+    int repeats = 1;  ///< how often the same text was reported
+};
+
+/// Everything the engine wants to tell a person. The library never prints: programs read this, or set a listener.
+/// Safe to call from any thread. A text that was reported before is counted, not listed again.
+class MessageLog {
+public:
+    void info(std::string text) { add(Severity::Info, std::move(text)); }
+    void warning(std::string text) { add(Severity::Warning, std::move(text)); }
+    void error(std::string text) { add(Severity::Error, std::move(text)); }
+    void add(Severity severity, std::string text);
+
+    std::vector<Message> messages() const;
+    std::vector<std::string> warnings() const;
+    void clear();
+
+    /// Called for each new text, on the thread that reports it, outside the log's lock.
+    void setListener(std::function<void(const Message&)> listener);
+
+private:
+    mutable std::mutex mutex_;
+    std::vector<Message> messages_;
+    std::function<void(const Message&)> listener_;
+};
+
+}  // namespace lumi

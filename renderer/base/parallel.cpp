@@ -1,0 +1,90 @@
+#include "base/parallel.h"
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_scheduler_observer.h>
+#include <unistd.h>
+#include <xmmintrin.h>
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+
+namespace lumi {
+namespace {
+
+std::atomic<bool> lowPriority{false};
+
+/// Prepares each thread that joins the pool.
+class WorkerSetup : public tbb::task_scheduler_observer {
+public:
+    WorkerSetup() { observe(true); }
+    ~WorkerSetup() override { observe(false); }
+    void on_scheduler_entry(bool isWorker) override {
+        flushDenormals();
+        if (isWorker && lowPriority) setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 10);
+    }
+};
+
+std::unique_ptr<tbb::global_control>& threadLimit() {
+    static std::unique_ptr<tbb::global_control> limit;
+    return limit;
+}
+
+void ensureSetup() { static WorkerSetup setup; }
+
+}  // namespace
+
+void setThreadCount(int count) {
+    threadLimit().reset();
+    if (count > 0)
+        threadLimit() = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                              static_cast<size_t>(count));
+}
+
+int threadCount() {
+    return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
+void lowerWorkerPriority() { lowPriority = true; }
+
+void flushDenormals() {
+    // Bit 15 is flush-to-zero, bit 6 denormals-are-zero.
+    _mm_setcsr(_mm_getcsr() | 0x8040u);
+}
+
+void parallelRanges(int64_t count, int64_t grain, const std::function<void(int64_t, int64_t)>& body,
+                    std::stop_token stop) {
+    ensureSetup();
+    if (count <= 0) return;
+    grain = std::max<int64_t>(grain, 1);
+    const int64_t blocks = (count + grain - 1) / grain;
+    tbb::parallel_for(
+        tbb::blocked_range<int64_t>(0, blocks, 1),
+        [&](const tbb::blocked_range<int64_t>& range) {
+            flushDenormals();
+            for (int64_t block = range.begin(); block != range.end(); ++block) {
+                if (stop.stop_requested()) return;
+                body(block * grain, std::min(count, (block + 1) * grain));
+            }
+        },
+        tbb::simple_partitioner());
+}
+
+void parallelFor(int64_t count, const std::function<void(int64_t)>& body, std::stop_token stop) {
+    parallelRanges(
+        count, 1, [&](int64_t begin, int64_t) { body(begin); }, stop);
+}
+
+void parallelInvoke(const std::function<void()>& a, const std::function<void()>& b) {
+    ensureSetup();
+    tbb::parallel_invoke(a, b);
+}
+
+}  // namespace lumi

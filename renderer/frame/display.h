@@ -1,0 +1,47 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "image/image.h"
+#include "params/parameter.h"
+
+namespace lumi {
+
+enum class ToneCurve { Clamp, Reinhard, Aces, AgX };
+
+/// How a buffer is shown: `view.<n>.*` in parameter ids. Colours go exposure, curve, sRGB; everything else through a
+/// colour map over [low, high].
+struct DisplaySettings {
+    float exposureEv = 0;
+    ToneCurve curve = ToneCurve::Aces;
+    std::string colourMap = "auto";  ///< "auto" (the buffer's own), "none", "viridis", "turbo", "magma", "signed", "cyclic", "ids", "gray"
+    bool autoRange = true;           ///< 1st to 99th percentile of finite values
+    float low = 0, high = 1;
+    int channel = -1;                ///< -1 all, 0.. one channel
+
+    void describe(ParameterVisitor&);
+};
+
+/// What convert() did, for the colour bar and the inspector.
+struct DisplayInfo {
+    bool falseColour = false;
+    std::string colourMap;
+    float low = 0, high = 1;
+    int64_t nonFinite = 0;  ///< pixels with NaN or infinity (NaN shows magenta, infinity cyan; +inf depth is the sky, black)
+};
+
+/// RGBA8 of a buffer. `channels` is SignalInfo::channels ("RGB", "XYZ", "Y", ...); `defaultMap` is used for "auto".
+/// RGB with map "none" is tone-mapped; XYZ shows 0.5 + 0.5 v; XY and motion show a colour wheel with map "wheel".
+/// Vectorised, on all threads; off the UI thread.
+DisplayInfo convert(const Image& image, const char* channels, const char* defaultMap, const DisplaySettings& settings,
+                    Image8& out);
+/// Ids get well-separated colours; 0 is black.
+DisplayInfo convert(const IdImage& image, const DisplaySettings& settings, Image8& out);
+
+/// The curve of one linear value (exposure applied before), before sRGB encoding; in [0,1]. Scalar definition.
+Vec3 toneMap(const Vec3& linear, ToneCurve curve);
+/// Colour (sRGB-encoded, [0,1]) of `t` in [0,1] on a map.
+Vec3 colourMapValue(const std::string& map, float t);
+const std::vector<const char*>& colourMapNames();
+
+}  // namespace lumi

@@ -1,0 +1,37 @@
+#include "reconstruct/catalog.h"
+
+#include "base/error.h"
+#include "reconstruct/accumulate/accumulate.h"
+#include "reconstruct/none/none.h"
+
+namespace lumi {
+namespace {
+
+template <class T>
+std::unique_ptr<Module> make() {
+    return std::make_unique<T>();
+}
+
+const ModuleEntry kCatalog[] = {
+    {"none", "Raw frame", "", make<NoneModule>},
+    {"accumulate", "Progressive mean", "", make<AccumulateModule>},
+};
+
+}  // namespace
+
+std::span<const ModuleEntry> moduleCatalog() { return kCatalog; }
+
+const ModuleEntry& findModule(const std::string& instanceName, const std::string& where) {
+    const std::string id = instanceName.substr(0, instanceName.find('@'));
+    std::vector<std::string> ids;
+    for (const ModuleEntry& entry : kCatalog) {
+        if (id == entry.id) return entry;
+        ids.push_back(entry.id);
+    }
+    const std::string near = nearestName(id, ids);
+    std::string all;
+    for (const std::string& known : ids) all += (all.empty() ? "" : ", ") + known;
+    throwUsage({"unknown module \"" + id + '"', where, near.empty() ? "one of " + all : '"' + near + '"', ""});
+}
+
+}  // namespace lumi

@@ -1,0 +1,93 @@
+#pragma once
+#include <memory>
+#include <set>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "base/timer.h"
+#include "frame/signals.h"
+#include "params/parameter.h"
+#include "scene/posed_scene.h"
+#include "trace/settings.h"
+
+namespace lumi {
+
+class Tracer;
+
+using FrameNumber = int64_t;
+
+/// What differs from the previous completed frame. `cut`: there is no previous frame (first frame, teleport, time jump,
+/// resize); motion is 0 then. Each module decides what it keeps.
+struct Changes {
+    bool cut = false;
+    bool camera = false;    ///< pose, lens or projection
+    bool objects = false;   ///< some instance or deformation moved
+    bool lights = false;
+    bool materials = false;
+    bool sampling = false;  ///< path, sampler or jitter settings
+    bool any() const { return cut || camera || objects || lights || materials || sampling; }
+};
+
+/// A named intermediate buffer that a module can show.
+struct Tap {
+    std::string name;      ///< camelCase; files call it <module>-<name>
+    const char* channels;  ///< one letter each, as SignalInfo::channels
+    const char* unit = "";
+    float rangeLow = 0, rangeHigh = 1;  ///< what false colour starts with
+    const char* colourMap = "viridis";  ///< "none" for colours shown as they are
+    const char* help = "";
+};
+using TapSet = std::set<std::string>;
+
+struct FrameContext {
+    FrameNumber frame = 0;
+    const Signals& signals;
+    const PosedScene& scene;
+    const CameraPose& camera;
+    const CameraPose& previousCamera;
+    Changes changes;
+    const TapSet& wantedTaps;
+    Tracer& tracer;
+    StageTimer& timer;
+    std::stop_token stop;
+};
+
+enum class RunResult { Completed, Stopped };
+
+/// Which taps, history and cells made a pixel, with weights and rejections, as text rows.
+struct Lineage {
+    struct Row {
+        std::string what;  ///< "history tap (412, 203)"
+        float weight = 0;
+        std::string verdict;  ///< "kept", "rejected: depth"
+    };
+    std::vector<Row> rows;
+};
+
+/// A reconstruction method. Screen-space methods filter the frame's signals; others may trace samples of their own.
+///
+/// run() is a transaction keyed by context.frame: history advances only when a run with a new number completes; a run
+/// with the same number again (a filter parameter moved) replaces its result from the same previous history; a stopped
+/// run changes nothing. NaN and infinity in the input never throw and never spread beyond their pixel's support.
+class Module {
+public:
+    virtual ~Module() = default;
+    /// With the present parameters: the tracer writes only what someone reads.
+    virtual SignalSet reads() const = 0;
+    virtual Jitter preferredJitter() const;
+    virtual void describe(ParameterVisitor&) = 0;
+    virtual void resize(Extent2) = 0;
+    /// Drops history: the next run() equals a fresh instance's.
+    virtual void forget() = 0;
+    /// `out`: RGB, scene-linear, of the resized extent. A module that keeps history reads the frame's changes itself.
+    virtual RunResult run(const FrameContext&, Image& out) = 0;
+    virtual std::span<const Tap> taps() const { return {}; }
+    /// A tap of the last completed run; empty if it was not wanted then.
+    virtual const Image& tap(const std::string& name) const;
+    virtual Lineage inspect(Pixel) const { return {}; }
+    virtual size_t byteCount() const { return 0; }
+};
+
+}  // namespace lumi

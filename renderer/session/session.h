@@ -1,0 +1,115 @@
+#pragma once
+#include <array>
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/messages.h"
+#include "frame/display.h"
+#include "image/image.h"
+#include "reconstruct/module.h"
+#include "session/document.h"
+#include "trace/tracer.h"
+
+namespace lumi {
+
+/// One view, ready for the screen.
+struct PaneSnapshot {
+    std::string module, buffer;   ///< what it shows
+    std::string label;            ///< "accumulate, 132 spp, equal samples"
+    std::shared_ptr<const Image8> pixels;
+    DisplayInfo info;
+};
+
+/// What the engine publishes after each frame: immutable, shared with the UI.
+struct Snapshot {
+    FrameNumber frame = -1;
+    uint64_t serial = 0;          ///< grows with each publication
+    float time = 0;
+    uint64_t accumulatedSamples = 0;  ///< per pixel, of the progressive mean; 0 if no module accumulates
+    Extent2 extent;
+    CameraPose camera;
+    std::shared_ptr<const PosedScene> scene;
+    std::shared_ptr<const Signals> signals;
+    std::map<std::string, std::shared_ptr<const Image>> results;  ///< by instance name
+    std::map<std::string, std::shared_ptr<const Image>> taps;     ///< "<instance>-<tap>"
+    std::vector<PaneSnapshot> panes;
+    std::vector<std::pair<std::string, double>> stagesMs;
+    double frameMs = 0;
+    TraceCounts rays;             ///< of this frame
+    double raysPerSecond = 0;
+};
+
+/// A buffer a view can show, for the selector.
+struct BufferEntry {
+    std::string name;     ///< as ViewSettings::buffer
+    std::string group;    ///< "Result", "Lighting", "Geometry", module title
+    std::string channels, unit, help;
+};
+
+/// A value under the cursor, for the inspector: one row a buffer.
+struct PixelValue {
+    std::string buffer, channels;
+    std::vector<float> values;
+    bool isId = false;
+    std::vector<uint32_t> ids;
+};
+
+struct LoadStatus {
+    bool loading = false;
+    float fraction = 0;
+    std::string step, path;
+};
+
+/// The running engine: a render thread that owns the modules and draws frame after frame of one Document. All public
+/// functions may be called from the UI thread and return at once; none waits for a frame.
+class Session {
+public:
+    explicit Session(MessageLog& log);
+    ~Session();
+
+    /// Loads aside and swaps when done. A failure is an Error in the log, and the present scene stays.
+    void open(const std::filesystem::path& scene, int sceneIndex = -1, const std::string& variant = "");
+    void reload();
+    void cancelLoading();
+    LoadStatus loadStatus() const;
+
+    /// Values take effect before the next frame; a frame in flight that they invalidate is abandoned.
+    /// Throws Error(Usage) for an unknown id or a value out of range.
+    void set(const std::string& id, const ParameterValue& value);
+    void setText(const std::string& id, const std::string& text);
+    /// The document as last set (not as last drawn).
+    Document document() const;
+    bool undo();
+    bool redo();
+
+    // Time and frames.
+    void setRendering(bool on);   ///< pause or go on
+    bool rendering() const;
+    void setPlaying(bool on);     ///< does time advance by 1/fps a frame
+    bool playing() const;
+    void step();                  ///< one frame, then pause
+    void stepBack();              ///< draws the previous frame again, bit for bit, then pause
+    void restart();               ///< frame 0, history forgotten
+
+    /// Latest published snapshot; never null after the first frame, null before.
+    std::shared_ptr<const Snapshot> snapshot() const;
+
+    std::vector<BufferEntry> buffers(const std::string& module) const;
+    /// All buffers present in the snapshot at a pixel.
+    std::vector<PixelValue> inspect(const Snapshot& snapshot, Pixel pixel) const;
+
+    /// Writes the view's picture (.png: as shown; .exr: linear with all buffers as layers), state embedded. Runs in the
+    /// background; success and failure arrive in the log.
+    void saveView(int view, const std::filesystem::path& path);
+    /// The log from which `render --replay` makes the present frame again.
+    std::string stateJson() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lumi

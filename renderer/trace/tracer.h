@@ -1,0 +1,101 @@
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stop_token>
+
+#include "frame/signals.h"
+#include "scene/posed_scene.h"
+#include "trace/observer.h"
+#include "trace/ray.h"
+#include "trace/settings.h"
+
+namespace lumi {
+
+/// One path to trace.
+struct PathStart {
+    Ray ray;
+    RayCone cone;
+    RandomKey key;
+    uint32_t slot = 0;  ///< the caller's index for it, handed to observers
+};
+
+/// What one frame of signals is made from.
+struct FrameSampling {
+    Extent2 extent;
+    CameraPose camera, previousCamera;  ///< on a cut both are equal
+    uint32_t frame = 0;
+    int samplesPerPixel = 1;
+    uint64_t firstSample = 0;  ///< index of the frame's first sample in each pixel's sequence: frame * spp
+    uint32_t seed = 0;
+    Jitter jitter = Jitter::PerPixel;  ///< not Auto
+    PathSettings path;
+    SignalSet wanted;
+};
+
+struct TraceCounts {
+    uint64_t cameraRays = 0, bounceRays = 0, shadowRays = 0;
+    uint64_t nonFinite = 0;  ///< path contributions that were NaN or infinite and were dropped
+    uint64_t total() const { return cameraRays + bounceRays + shadowRays; }
+};
+
+/// Traces and shades batches in one posed scene. All functions may be called from any thread and run on the whole pool;
+/// results depend only on their arguments.
+class Tracer {
+public:
+    Tracer();
+    ~Tracer();
+    Tracer(const Tracer&) = delete;
+    Tracer& operator=(const Tracer&) = delete;
+
+    /// Makes `posed` the scene that is traced: builds, refits or keeps each part of the Embree scene and the lights by
+    /// what changed against the last call. Throws Error(Resources) if it does not fit the memory limit.
+    void bind(std::shared_ptr<const PosedScene> posed);
+    const PosedScene& scene() const;
+
+    /// Renders one frame of signals: `sampling.wanted` plus what they depend on. Returns false if stopped; then
+    /// `signals` is unspecified. `extra` observers see every path (slot = y * width + x).
+    bool sample(const FrameSampling& sampling, Signals& signals, std::stop_token stop = {},
+                std::span<PathObserver* const> extra = {});
+
+    /// Traces whole paths from given rays. `radiance` (may be empty) receives one value a start. Observers see every
+    /// vertex. Starts are cut into batches of a fixed size in order; equal slots must be adjacent.
+    bool tracePaths(std::span<const PathStart> starts, const PathSettings& settings, uint32_t seed,
+                    std::span<Vec3> radiance, std::span<PathObserver* const> observers, std::stop_token stop = {});
+
+    /// Shades given surface points as seen along -wo[i] (unit, world, away from the surface), path continuing from
+    /// there: a path whose first vertex is given. Invalid points give 0.
+    bool shade(std::span<const SurfacePoint> points, std::span<const Vec3> wo, std::span<const RandomKey> keys,
+               const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
+               std::span<PathObserver* const> observers, std::stop_token stop = {});
+
+    void closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::stop_token stop = {});
+    /// blocked[i] = 1 if anything lies in (tmin, tmax). With `blockers` (may be empty) the nearest blocker is reported.
+    void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked, std::span<SurfacePoint> blockers = {},
+                  std::stop_token stop = {});
+
+    /// World position of a surface point, and of the same point in the previous frame.
+    Vec3 position(const SurfacePoint& point) const;
+    Vec3 previousPosition(const SurfacePoint& point) const;
+    /// Unit shading normal (not flipped) of a surface point.
+    Vec3 normal(const SurfacePoint& point) const;
+
+    TraceCounts counts() const;
+    void resetCounts();
+    /// Bytes held by Embree and by our own tables.
+    size_t byteCount() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Camera ray through continuous pixel `pixelPosition`; `lens` in [0,1)^2.
+PathStart cameraStart(const CameraPose& camera, Vec2 pixelPosition, Vec2 lens, float time);
+
+/// Sub-pixel offset of frame `sampleIndex` in [-0.5, 0.5]^2 relative to the pixel centre, shared by all pixels
+/// (Jitter::PerFrame): Halton (2, 3), looping after 16.
+Vec2 frameJitter(uint64_t sampleIndex);
+
+}  // namespace lumi
