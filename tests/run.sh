@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds everything with warnings as errors, and runs the whole suite; then builds the parsers,
+# the image code and the frame engine again with the address and undefined-behaviour sanitizers and runs their tests.
+#   ./tests/run.sh [--quick]     --quick leaves the sanitizers out
+set -euo pipefail
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+. "$source_dir/app/packages.sh"
+install_packages "${build_packages[@]}" "${test_packages[@]}"
+cd "$source_dir"
+
+jobs=$(nproc)
+log=$source_dir/build/tests.log
+mkdir -p build
+build() { # build PRESET TARGET...
+    local preset=$1; shift
+    echo "Building $preset ..."
+    if ! (cmake --preset "$preset" && cmake --build --preset "$preset" -j"$jobs" "$@") >"$log" 2>&1; then
+        grep -E -A 12 'error|FAILED' "$log" | head -n 80
+        echo "The $preset build failed; the whole log is $log"
+        exit 1
+    fi
+}
+
+build release
+ctest --test-dir build/release --output-on-failure --timeout 600 -j1
+
+if [ "${1:-}" != --quick ]; then
+    sanitized="test_base test_params test_image test_scene test_session"
+    # shellcheck disable=SC2086
+    build asan-ubsan --target $sanitized
+    # Embree and Mesa keep allocations of their own until the process ends.
+    export LSAN_OPTIONS=suppressions=$source_dir/tests/sanitizers/lsan.supp:print_suppressions=0
+    export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=detect_stack_use_after_return=1
+    pattern="^(${sanitized// /|})\$"
+    ctest --test-dir build/asan-ubsan --output-on-failure --timeout 900 -R "$pattern" -j1
+fi
