@@ -44,6 +44,7 @@ public:
     Redo set(const std::string& id, const ParameterValue& value, const std::string& where = "");
     Redo setText(const std::string& id, const std::string& text, const std::string& where = "");
     ParameterValue get(const std::string& id) const;
+    ParameterValue initial(const std::string& id) const;  ///< before any change: what "reset" goes back to
     /// Every id with its declaration and present value. `group` filters by prefix ("path.", "svgf@b.").
     std::vector<ParameterInfo> list(const std::string& group = "") const;
     /// Values that differ from the scene's own defaults, as {"id": value}; applying them to a fresh Document of the

@@ -84,8 +84,15 @@ public:
     /// Throws Error(Usage) for an unknown id or a value out of range.
     void set(const std::string& id, const ParameterValue& value);
     void setText(const std::string& id, const std::string& text);
+    /// Several values that belong together (eye and look-at): no frame sees a part of them. One step of undo.
+    void setAll(const std::vector<std::pair<std::string, ParameterValue>>& values);
+    /// Changes of the same ids in a row (a slider dragged, a camera flown) are one step of undo until this is called.
+    void endEdit();
     /// The document as last set (not as last drawn).
     Document document() const;
+    /// Grows with each change of the document, new scenes included: what was read from document() is still true while
+    /// this stands.
+    uint64_t revision() const;
     bool undo();
     bool redo();
 
