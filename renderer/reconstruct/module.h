@@ -66,6 +66,13 @@ struct Lineage {
     std::vector<Row> rows;
 };
 
+/// How far a method that converges has come.
+struct Convergence {
+    uint64_t samples = 0;  ///< a pixel so far; 0: the method does not converge
+    uint64_t target = 0;   ///< where it stops; 0: never
+    bool done() const { return target > 0 && samples >= target; }
+};
+
 /// A reconstruction method. Screen-space methods filter the frame's signals; others may trace samples of their own.
 ///
 /// run() is a transaction keyed by context.frame: history advances only when a run with a new number completes; a run
@@ -87,6 +94,10 @@ public:
     /// A tap of the last completed run; empty if it was not wanted then.
     virtual const Image& tap(const std::string& name) const;
     virtual Lineage inspect(Pixel) const { return {}; }
+    /// Of the last completed run. A frame loop may rest while every module is done().
+    virtual Convergence convergence() const { return {}; }
+    /// Does history reach across these changes? Where it does not, a replay may begin here.
+    virtual bool keepsHistory(const Changes& changes) const { return !changes.cut; }
     virtual size_t byteCount() const { return 0; }
 };
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -9,40 +11,70 @@
 #include "params/parameter.h"
 #include "reconstruct/module.h"
 #include "scene/scene.h"
+#include "trace/settings.h"
 
 namespace lumi {
 
-/// What one view shows: `view.<n>.*`. Panes 0 and 1 exist always; the layout says how many are drawn.
+/// What one view shows: `view.<n>.*`. Views 0 and 1 exist always; `view.layout` says how many are drawn.
 struct ViewSettings {
     std::string module = "accumulate";  ///< instance name
     std::string buffer = "image";       ///< "image" (the module's result), a signal's name, or a tap's name of the module
     DisplaySettings display;
     void describe(ParameterVisitor&);
 };
+constexpr int kViewCount = 2;
+
+/// How the views stand on the screen: `view.layout`. With Single only view 0 is drawn (and its module alone runs).
+enum class Layout { Single, SideBySide, Wipe };
 
 /// Frame settings: `render.*` in parameter ids.
 struct RenderSettings {
-    int width = 640, height = 360;   ///< of the rendered image, independent of the window
-    int samplesPerPixel = 1;         ///< per frame
+    int width = 1280, height = 720;  ///< of the rendered image, independent of the window
+    int samplesPerPixel = 1;         ///< per frame; id `spp`
     int seed = 0;
-    Jitter jitter = Jitter::Auto;    ///< Auto: what the first view's module prefers
-    int maxSamples = 0;              ///< 0 cannot be set from a panel: see `limit`
+    float fps = 60;                  ///< time advances by 1/fps a frame while it plays
     void describe(ParameterVisitor&);
 };
 
 /// All that a user can change, addressed by ids:
-///     render.width  path.max-depth  sampler...  camera.eye  camera.select  time  scene.variant  environment.rotate-deg
-///     material.<name>.roughness  light.<name>.power  view.0.buffer  view.0.exposure  <instance>.<parameter>
+///     render.width  path.max-depth  sampler.kind  camera.eye  camera.select  camera.jitter  time  scene.index
+///     scene.variant  environment.rotate-deg  environment.file  material.<name>.roughness  light.<name>.power
+///     view.layout  view.0.buffer  view.0.exposure  <instance>.<parameter>
+/// Names of materials, lights and cameras are written as slugs: lower case, anything but letters and digits as `-`,
+/// `-2`, `-3` after the second and third of the same slug.
 /// A Document is a value: copying is cheap (scenes and meshes are shared). It knows nothing of threads.
 class Document {
 public:
+    /// Of a scene as loaded; the scene's own render settings apply. Throws Error(BadInput) if those name unknown ids.
     explicit Document(std::shared_ptr<const Scene> scene);
 
-    std::shared_ptr<const Scene> scene() const;  ///< with the edits to materials, lights and environment applied
-    Camera camera() const;                        ///< at the document's time, user's edits applied
+    std::shared_ptr<const Scene> scene() const { return edited_; }    ///< edits of materials, lights, sky applied
+    std::shared_ptr<const Scene> loadedScene() const { return loaded_; }  ///< as loaded
+    Camera camera() const;  ///< at the document's time, the user's edits applied
+    int cameraIndex() const { return camera_; }
+    Jitter jitter() const { return jitter_; }  ///< Auto: what the first view's module prefers
+    float time() const { return time_; }
+    Layout layout() const { return layout_; }
+    const RenderSettings& render() const { return render_; }
+    const PathSettings& path() const { return path_; }
+    const ViewSettings& view(int index) const { return views_[static_cast<size_t>(index)]; }
+    int sceneIndex() const { return sceneIndex_; }
+    const std::string& sceneVariant() const { return sceneVariant_; }
+
+    /// Instances whose views are drawn, each once, in order of the views.
+    std::vector<std::string> activeInstances() const;
+    /// Gives a module the parameters that `instance` has.
+    void configure(const std::string& instance, Module& module) const;
+    /// Distinct for any two documents whose materials, or lights and sky, differ by edits.
+    uint64_t materialsStamp() const { return materialsStamp_; }
+    uint64_t lightsStamp() const { return lightsStamp_; }
+
     /// Sets one value, and returns what that invalidates. Throws Error(Usage) naming the nearest id.
+    /// `environment.file` reads the image (Error(BadInput) if it cannot); `camera.select` drops the user's camera edits;
+    /// `scene.index` and `scene.variant` only take effect by loading again.
     Redo set(const std::string& id, const ParameterValue& value, const std::string& where = "");
     Redo setText(const std::string& id, const std::string& text, const std::string& where = "");
+    void setTime(float seconds) { time_ = seconds; }
     ParameterValue get(const std::string& id) const;
     ParameterValue initial(const std::string& id) const;  ///< before any change: what "reset" goes back to
     /// Every id with its declaration and present value. `group` filters by prefix ("path.", "svgf@b.").
@@ -50,6 +82,34 @@ public:
     /// Values that differ from the scene's own defaults, as {"id": value}; applying them to a fresh Document of the
     /// same scene gives this one.
     nlohmann::json changedValues() const;
+    /// Sets every value of {"id": value}, in an order in which none undoes another.
+    void apply(const nlohmann::json& values, const std::string& where = "");
+
+private:
+    friend class DocumentFields;
+    struct Names {
+        std::vector<std::string> materials, lights, cameras;
+    };
+    using Values = std::map<std::string, ParameterValue>;
+
+    std::shared_ptr<const Scene> loaded_, edited_;
+    std::shared_ptr<const Names> names_;
+    std::shared_ptr<const Document> initial_;  ///< null in the initial document itself
+    RenderSettings render_;
+    PathSettings path_;
+    Jitter jitter_ = Jitter::Auto;
+    Layout layout_ = Layout::Single;
+    std::array<ViewSettings, kViewCount> views_;
+    int camera_ = 0;
+    Values cameraEdits_;  ///< by id without `camera.`
+    float time_ = 0;
+    int sceneIndex_ = -1;
+    std::string sceneVariant_;
+    std::map<std::string, Values> instances_;  ///< what was set, by instance
+    uint64_t materialsStamp_ = 0, lightsStamp_ = 0;
 };
+
+/// The ids' form of names: see Document. Unnamed things are called `<kind>-<number>`, counted from 1.
+std::vector<std::string> slugs(const std::vector<std::string>& names, const std::string& kind);
 
 }  // namespace lumi

@@ -29,6 +29,7 @@ struct Snapshot {
     uint64_t serial = 0;          ///< grows with each publication
     float time = 0;
     uint64_t accumulatedSamples = 0;  ///< per pixel, of the progressive mean; 0 if no module accumulates
+    uint64_t targetSamples = 0;   ///< where the progressive mean stops and the engine rests; 0: never
     Extent2 extent;
     CameraPose camera;
     std::shared_ptr<const PosedScene> scene;
