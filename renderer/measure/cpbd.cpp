@@ -1,0 +1,99 @@
+// Cumulative probability of blur detection [Narvekar & Karam 2011]: the share of edges whose blur is below what people
+// just notice.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "measure/metrics.h"
+
+namespace lumi {
+namespace {
+
+constexpr int kBlock = 64;                // side of the blocks whose contrast sets the just noticeable blur
+constexpr double kEdgeShare = 0.002;      // blocks with fewer edge pixels do not count
+constexpr double kBeta = 3.6;             // exponent of the psychometric function
+constexpr double kDetectable = 0.63;      // probability at the just noticeable blur
+
+/// Vertical edges: Sobel gradient along x, thinned along x, above the threshold that the image's own gradients set
+/// (four times their mean square, as in the usual automatic Sobel detector).
+std::vector<uint8_t> verticalEdges(ConstFloatPlane gray) {
+    const int w = gray.width, h = gray.height;
+    std::vector<float> strength(static_cast<size_t>(w) * static_cast<size_t>(h), 0.0f);
+    double sum = 0;
+    for (int y = 1; y + 1 < h; ++y)
+        for (int x = 1; x + 1 < w; ++x) {
+            const float gx = (gray.at(x + 1, y - 1) + 2 * gray.at(x + 1, y) + gray.at(x + 1, y + 1) -
+                              gray.at(x - 1, y - 1) - 2 * gray.at(x - 1, y) - gray.at(x - 1, y + 1)) / 8;
+            strength[static_cast<size_t>(y) * static_cast<size_t>(w) + static_cast<size_t>(x)] = gx * gx;
+            sum += gx * gx;
+        }
+    const double threshold = 4 * sum / std::max(1.0, static_cast<double>(w - 2) * (h - 2));
+    std::vector<uint8_t> edges(strength.size(), 0);
+    for (int y = 1; y + 1 < h; ++y)
+        for (int x = 1; x + 1 < w; ++x) {
+            const size_t i = static_cast<size_t>(y) * static_cast<size_t>(w) + static_cast<size_t>(x);
+            edges[i] = strength[i] > threshold && strength[i] > strength[i - 1] && strength[i] >= strength[i + 1];
+        }
+    return edges;
+}
+
+/// Pixels from the edge to the nearest extremum on one side, along the row; `step` is -1 or 1, `rising` the direction
+/// of the intensity towards that side.
+int extent(const float* row, int width, int x, int step, bool rising) {
+    int length = 0;
+    for (int i = x; i + step >= 0 && i + step < width; i += step, ++length)
+        if (rising ? row[i + step] <= row[i] : row[i + step] >= row[i]) break;
+    return length;
+}
+
+}  // namespace
+
+double cpbd(ConstFloatPlane gray) {
+    const int w = gray.width, h = gray.height;
+    if (w < 3 || h < 3) return 0;
+    const std::vector<uint8_t> edges = verticalEdges(gray);
+    int64_t total = 0, sharp = 0;
+    for (int by = 0; by < h; by += kBlock)
+        for (int bx = 0; bx < w; bx += kBlock) {
+            const int x1 = std::min(bx + kBlock, w), y1 = std::min(by + kBlock, h);
+            int count = 0;
+            float low = 255, high = 0;
+            for (int y = by; y < y1; ++y)
+                for (int x = bx; x < x1; ++x) {
+                    count += edges[static_cast<size_t>(y) * static_cast<size_t>(w) + static_cast<size_t>(x)];
+                    low = std::min(low, gray.at(x, y)), high = std::max(high, gray.at(x, y));
+                }
+            if (count <= kEdgeShare * (x1 - bx) * (y1 - by)) continue;
+            const double noticeable = high - low <= 50 ? 5 : 3;  // just noticeable blur in pixels (sec. III)
+            for (int y = by; y < y1; ++y)
+                for (int x = std::max(bx, 1); x < std::min(x1, w - 1); ++x) {
+                    if (!edges[static_cast<size_t>(y) * static_cast<size_t>(w) + static_cast<size_t>(x)]) continue;
+                    const float* row = gray.row(y);
+                    const bool rising = row[x + 1] > row[x - 1];
+                    const int width = extent(row, w, x, 1, rising) + extent(row, w, x, -1, !rising);
+                    const double blurSeen = 1 - std::exp(-std::pow(width / noticeable, kBeta));
+                    ++total;
+                    sharp += blurSeen <= kDetectable;
+                }
+        }
+    return total > 0 ? static_cast<double>(sharp) / static_cast<double>(total) : 0;
+}
+
+Measurement measureCpbd(const ImagePair& pair, bool) {
+    const auto gray = [&](const Image& linear) {
+        const Image ldr = ldrImage(linear, pair.exposureEv);
+        Image out(ldr.extent(), 1);
+        for (int y = 0; y < ldr.height(); ++y)
+            for (int x = 0; x < ldr.width(); ++x)
+                out.at(0, x, y) = std::round(
+                    255 * (0.299f * ldr.at(0, x, y) + 0.587f * ldr.at(1, x, y) + 0.114f * ldr.at(2, x, y)));
+        return out;
+    };
+    const Image image = gray(pair.image), reference = gray(pair.reference);
+    Measurement result;
+    result.value = cpbd(image.plane(0));
+    result.details = {{"reference_cpbd", cpbd(reference.plane(0))}};
+    return result;
+}
+
+}  // namespace lumi

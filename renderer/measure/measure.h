@@ -1,0 +1,56 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "image/image.h"
+
+namespace lumi {
+
+/// Two images to compare: linear RGB of one extent. Pixels that are not finite in either image, or that a mask leaves
+/// out, do not count in any metric; they are 0 in error maps.
+struct ImagePair {
+    Image image, reference;  ///< 3 channels
+    Image mask;              ///< 1 channel, above 0.5 counts; empty: everything counts
+    float exposureEv = 0;    ///< for metrics on tone-mapped images: 2^EV, clamp, sRGB
+
+    /// Checks extents, finds and blanks non-finite pixels (both images get 0 there). Call once before measuring.
+    /// Throws Error(BadInput) if extents differ.
+    void prepare(const std::string& where = "");
+    bool counts(int x, int y) const { return valid.empty() || valid.at(0, x, y) > 0.5f; }
+
+    int64_t nonFinitePixels = 0;  ///< of the two together, set by prepare()
+    Image valid;                  ///< set by prepare() where not everything counts
+};
+
+/// A metric's number and its error map (1 channel, extent of the images; empty if not asked for or not defined).
+struct Measurement {
+    double value = 0;
+    Image map;
+    /// Further values worth printing, e.g. HDR-FLIP's exposure range: name and number.
+    std::vector<std::pair<std::string, double>> details;
+};
+
+/// One metric the program knows.
+struct Metric {
+    const char* id;          ///< "rel_mse" style ids of `list metrics`
+    const char* title;
+    const char* definition;  ///< one sentence with space, constants and source
+    bool higherIsBetter;
+    bool symmetric;          ///< measure(a, b) == measure(b, a)
+    const char* mapColours;  ///< colour map for its error map, nullptr without one
+    Measurement (*measure)(const ImagePair& pair, bool wantMap);
+};
+
+/// Every metric, in the order of the contract: rmse relmse mse mae psnr smape ssim ms_ssim flip hdr_flip cpbd.
+const std::vector<Metric>& metricCatalog();
+/// Throws Error(Usage) naming the nearest id.
+const Metric& findMetric(const std::string& id, const std::string& where = "");
+
+/// Tone-mapped image as metrics on LDR see it: exposure, clamp to [0,1], sRGB encoding; 3 channels.
+Image ldrImage(const Image& linear, float exposureEv);
+
+/// Mean of a map over the pixels that count, summed in double, row by row.
+double meanOverMask(const Image& map, const ImagePair& pair);
+
+}  // namespace lumi

@@ -1,0 +1,145 @@
+#include "measure/measure_kernels.h"
+
+#include "math/kernel_math.h"
+
+namespace lumi::LUMI_ISA {
+const MeasureKernels& measureTable();
+namespace {
+
+void convolveRow(const float* in, const float* weights, int taps, float* out, int width) {
+    for (int x = 0; x < width; ++x) out[x] = 0;
+    for (int k = 0; k < taps; ++k) {
+        const float weight = weights[k];
+        const float* shifted = in + k;
+        for (int x = 0; x < width; ++x) out[x] += weight * shifted[x];
+    }
+}
+
+void convolveColumn(const float* const* rows, const float* weights, int taps, float* out, int width) {
+    for (int x = 0; x < width; ++x) out[x] = 0;
+    for (int k = 0; k < taps; ++k) {
+        const float weight = weights[k];
+        const float* row = rows[k];
+        for (int x = 0; x < width; ++x) out[x] += weight * row[x];
+    }
+}
+
+inline float clamp01(float x) { return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f; }
+inline float absolute(float x) { return x < 0 ? -x : x; }
+inline float squareRoot(float x) { return __builtin_sqrtf(x); }
+
+// sRGB to XYZ [IEC 61966-2-1], and the white point that belongs to it.
+constexpr float kWhiteX = 0.950428545f, kWhiteZ = 1.088900371f;
+
+inline float labCurve(float t) {
+    const float root = kernelPow(t, 1.0f / 3.0f);
+    return t > 0.008856452f ? root : 7.787037037f * t + 0.137931034f;
+}
+
+/// Filtered YCxCz to Hunt-adjusted CIELab.
+inline void huntLab(float yy, float cx, float cz, float& lightness, float& a, float& b) {
+    const float y = (yy + 16.0f) / 116.0f;
+    float xyzX = (y + cx / 500.0f) * kWhiteX;
+    float xyzY = y;
+    float xyzZ = (y - cz / 200.0f) * kWhiteZ;
+    const float red = clamp01(3.241003275f * xyzX - 1.537398934f * xyzY - 0.498615861f * xyzZ);
+    const float green = clamp01(-0.969224334f * xyzX + 1.875930071f * xyzY + 0.041554224f * xyzZ);
+    const float blue = clamp01(0.055639423f * xyzX - 0.204011202f * xyzY + 1.057148933f * xyzZ);
+    xyzX = 0.4123865f * red + 0.3575915f * green + 0.1804505f * blue;
+    xyzY = 0.2126368f * red + 0.7151830f * green + 0.0721802f * blue;
+    xyzZ = 0.0193306f * red + 0.1191972f * green + 0.9503726f * blue;
+    const float fx = labCurve(xyzX / kWhiteX), fy = labCurve(xyzY), fz = labCurve(xyzZ / kWhiteZ);
+    lightness = 116.0f * fy - 16.0f;
+    a = 0.01f * lightness * (500.0f * (fx - fy));
+    b = 0.01f * lightness * (200.0f * (fy - fz));
+}
+
+void flipColour(const float* const test[3], const float* const reference[3], const float remap[3], float* out,
+                int width) {
+    const float *t0 = test[0], *t1 = test[1], *t2 = test[2];
+    const float *r0 = reference[0], *r1 = reference[1], *r2 = reference[2];
+    const float knee = remap[0], share = remap[1], limit = remap[2];
+    for (int x = 0; x < width; ++x) {
+        float lt, at, bt, lr, ar, br;
+        huntLab(t0[x], t1[x], t2[x], lt, at, bt);
+        huntLab(r0[x], r1[x], r2[x], lr, ar, br);
+        const float distance = absolute(lt - lr) + squareRoot((at - ar) * (at - ar) + (bt - br) * (bt - br));
+        const float powered = distance > 0 ? kernelPow(distance, 0.7f) : 0.0f;
+        const float low = powered * (share / knee);
+        const float high = share + (powered - knee) / (limit - knee) * (1.0f - share);
+        out[x] = powered < knee ? low : high;
+    }
+}
+
+void flipCombine(const float* const test[4], const float* const reference[4], float* colour, int width) {
+    const float *tex = test[0], *tey = test[1], *tpx = test[2], *tpy = test[3];
+    const float *rex = reference[0], *rey = reference[1], *rpx = reference[2], *rpy = reference[3];
+    for (int x = 0; x < width; ++x) {
+        const float edges = absolute(squareRoot(tex[x] * tex[x] + tey[x] * tey[x]) -
+                                     squareRoot(rex[x] * rex[x] + rey[x] * rey[x]));
+        const float points = absolute(squareRoot(tpx[x] * tpx[x] + tpy[x] * tpy[x]) -
+                                      squareRoot(rpx[x] * rpx[x] + rpy[x] * rpy[x]));
+        const float feature = squareRoot(0.70710678f * (edges > points ? edges : points));
+        const float powered = kernelPow(colour[x], 1.0f - feature);
+        colour[x] = colour[x] > 0 ? (powered < 1.0f ? powered : 1.0f) : 0.0f;
+    }
+}
+
+void yCxCzFromLinear(const float* const rgb[3], float* const out[3], int width) {
+    const float *red = rgb[0], *green = rgb[1], *blue = rgb[2];
+    float *o0 = out[0], *o1 = out[1], *o2 = out[2];
+    for (int x = 0; x < width; ++x) {
+        const float xx = (0.4123865f * red[x] + 0.3575915f * green[x] + 0.1804505f * blue[x]) / kWhiteX;
+        const float yy = 0.2126368f * red[x] + 0.7151830f * green[x] + 0.0721802f * blue[x];
+        const float zz = (0.0193306f * red[x] + 0.1191972f * green[x] + 0.9503726f * blue[x]) / kWhiteZ;
+        o0[x] = 116.0f * yy - 16.0f;
+        o1[x] = 500.0f * (xx - yy);
+        o2[x] = 200.0f * (yy - zz);
+    }
+}
+
+void encodeLdr(const float* in, float exposureFactor, float* out, int width) {
+    for (int x = 0; x < width; ++x) {
+        const float v = clamp01(in[x] * exposureFactor);
+        const float curve = 1.055f * kernelPow(v, 1.0f / 2.4f) - 0.055f;
+        out[x] = v <= 0.0031308f ? 12.92f * v : curve;
+    }
+}
+
+void decodeSrgb(const float* in, float* out, int width) {
+    for (int x = 0; x < width; ++x) {
+        const float v = in[x];
+        const float curve = kernelPow((v + 0.055f) / 1.055f, 2.4f);
+        out[x] = v <= 0.04045f ? v / 12.92f : curve;
+    }
+}
+
+void toneRational(const float* in, float exposureFactor, const float c[6], float* out, int width) {
+    for (int x = 0; x < width; ++x) {
+        const float v = in[x] * exposureFactor;
+        out[x] = clamp01((c[0] * v * v + c[1] * v + c[2]) / (c[3] * v * v + c[4] * v + c[5]));
+    }
+}
+
+void ssimRow(const float* meanA, const float* meanB, const float* squareA, const float* squareB, const float* product,
+             float* ssim, float* contrast, int width) {
+    constexpr float c1 = 0.01f * 0.01f, c2 = 0.03f * 0.03f;
+    for (int x = 0; x < width; ++x) {
+        const float ab = meanA[x] * meanB[x], aa = meanA[x] * meanA[x], bb = meanB[x] * meanB[x];
+        const float covariance = product[x] - ab;
+        const float variances = (squareA[x] - aa) + (squareB[x] - bb);
+        const float structure = (2 * covariance + c2) / (variances + c2);
+        contrast[x] = structure;
+        ssim[x] = (2 * ab + c1) / (aa + bb + c1) * structure;
+    }
+}
+
+}  // namespace
+
+const MeasureKernels& measureTable() {
+    static const MeasureKernels table{convolveRow, convolveColumn, flipColour,   flipCombine, yCxCzFromLinear,
+                                      encodeLdr,   decodeSrgb,     toneRational, ssimRow};
+    return table;
+}
+
+}  // namespace lumi::LUMI_ISA

@@ -1,0 +1,36 @@
+#pragma once
+#include "measure/measure.h"
+
+/// The metrics one by one; metricCatalog() gives their definitions. All want a prepared pair.
+namespace lumi {
+
+Measurement measureMse(const ImagePair& pair, bool wantMap);
+Measurement measureRmse(const ImagePair& pair, bool wantMap);
+Measurement measureMae(const ImagePair& pair, bool wantMap);
+Measurement measurePsnr(const ImagePair& pair, bool wantMap);
+Measurement measureRelMse(const ImagePair& pair, bool wantMap);
+Measurement measureSmape(const ImagePair& pair, bool wantMap);
+Measurement measureSsim(const ImagePair& pair, bool wantMap);
+Measurement measureMsSsim(const ImagePair& pair, bool wantMap);
+Measurement measureFlip(const ImagePair& pair, bool wantMap);
+Measurement measureHdrFlip(const ImagePair& pair, bool wantMap);
+Measurement measureCpbd(const ImagePair& pair, bool wantMap);
+
+/// SSIM of LDR images in [0,1] [Wang 2004]: Gaussian window 11, sigma 1.5, windows fully inside, mean over channels.
+double ssim(const Image& image, const Image& reference);
+/// MS-SSIM [Wang 2003]: five scales with the standard weights; halving averages 2x2, odd sizes repeat their last row
+/// and column. Images smaller than 176 pixels on a side use as many scales as fit, weights renormalised.
+double msSsim(const Image& image, const Image& reference);
+
+/// Exposure range of HDR-FLIP from the reference [Andersson 2021, sec. 3.2] with the ACES tone mapper: start and stop in
+/// EV. A reference whose median is 0 uses the median of its pixels above 0; an all-black one gives {0, 0}.
+struct FlipExposures {
+    double start = 0, stop = 0;
+    int count = 2;
+};
+FlipExposures flipExposures(const Image& reference);
+
+/// CPBD sharpness of one image, in [0,1], higher is sharper [Narvekar & Karam 2011]. `gray` in [0,255].
+double cpbd(ConstFloatPlane gray);
+
+}  // namespace lumi
