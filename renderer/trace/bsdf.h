@@ -1,9 +1,11 @@
 #pragma once
+#include "trace/albedo_table.h"
+#include "trace/ggx.h"
 #include "trace/observer.h"
 
 namespace lumi {
 
-/// A material at a point, textures looked up: what the lobes are built from.
+/// A material at a point, textures looked up: what the lobes are built from. Values out of range are clamped.
 struct BsdfInputs {
     Vec3 baseColor{1};
     float metallic = 0;
@@ -39,30 +41,80 @@ struct BsdfSample {
 ///     (metals) baseColor; exact dielectric Fresnel where the base transmits;
 ///   specular transmission: rough dielectric [Walter 2007] for solids, mirrored-reflection lobe for thin walls.
 /// Roughness below kDeltaRoughness is a perfect mirror or window: a delta lobe.
+///
+/// What is transported is radiance over the square of the refractive index, which refraction leaves as it is: no
+/// factor eta^2 on the way in, none on the way out. In air that is radiance; a closed piece of glass in a furnace gives
+/// 1 and albedos stay in [0,1] on both sides. Light emitted inside a solid is taken in the same measure.
+/// A thin wall tints by baseColor, each face of a solid by its root: what is seen through either has the colour once.
 class Bsdf {
 public:
-    static constexpr float kDeltaRoughness = 0.02f;
+    static constexpr float kDeltaRoughness = kTabledRoughness;
 
     Bsdf() = default;
     Bsdf(const BsdfInputs& inputs, const Vec3& wo);
 
     BsdfValue evaluate(const Vec3& wi) const;
+    /// `uLobe` chooses the lobe in proportion to the luminance of its albedo (but each lobe at least kMinLobeShare).
     BsdfSample sample(float uLobe, Vec2 u) const;
 
     /// Directional albedo towards wo of one lobe, and of all specular lobes together. In [0,1].
     Vec3 albedo(Lobe lobe) const;
     Vec3 specularAlbedo() const { return albedo(Lobe::SpecularReflection) + albedo(Lobe::SpecularTransmission); }
-    /// One lobe alone, f |cos|, for tests and for modules that replace a term.
+    /// One lobe alone, f |cos|, for tests and for modules that replace a term. 0 for delta lobes.
     Vec3 evaluate(const Vec3& wi, Lobe lobe) const;
     /// True if every lobe is a delta: next-event estimation cannot contribute.
     bool isDelta() const;
+    /// Chance that sample() draws this lobe.
+    float probability(Lobe lobe) const;
+
+    /// Makes the albedo tables that materials of this ior need (about 20 ms the first time), so that no path waits.
+    /// `transmits`: also those of dielectric boundaries. Any thread.
+    static void prepare(float ior, bool transmits);
 
 private:
-    friend struct BsdfParts;
-    BsdfInputs inputs_;
+    static constexpr float kMinLobeShare = 0.05f;
+    enum Slot { kDiffuse, kReflection, kTransmission, kSlots };
+    /// f |cos| and the density of the lobe's own sampling.
+    struct LobeValue {
+        Vec3 f{0};
+        float pdf = 0;
+    };
+
+    void setDiffuse(const Vec3& rho, float f0, float f90);
+    void setSpecular(bool inside);
+    void chooseProbabilities();
+
+    LobeValue diffuse(const Vec3& wi) const;
+    LobeValue reflection(const Vec3& wi, const Vec3& h) const;
+    LobeValue transmissionThin(const Vec3& mirrored, const Vec3& h) const;
+    LobeValue transmissionSolid(const Vec3& wi, const Vec3& h) const;
+    LobeValue transmission(const Vec3& wi) const;
+    Vec3 reflectance(float cosTheta) const;
+    Vec2 schlickAlbedo(float cosTheta) const;
+
+    BsdfSample sampleDiffuse(Vec2 u) const;
+    BsdfSample sampleReflection(Vec2 u) const;
+    BsdfSample sampleTransmission(Vec2 u) const;
+    BsdfSample deltaSample(Slot slot, const Vec3& wi) const;
+
     Vec3 wo_{0, 0, 1};
-    float alpha_ = 0.25f;  ///< GGX, roughness squared
-    // The implementation adds what it precomputes: lobe weights, F0, albedo look-ups.
+    Ggx ggx_;
+    RoughnessRow row_;           ///< of all albedo tables
+    float lambdaO_ = 0;          ///< ggx_.lambda(wo_)
+    float eta_ = 1;              ///< index of the far side over that of wo's side
+    bool smooth_ = false;        ///< reflection is a delta
+    bool deltaTransmission_ = false;
+    bool solid_ = false;
+
+    Vec3 diffuseScale_{0};       ///< rho (1 - E(wo)) / (1 - Eavg) / pi
+    float layerF0_ = 0, layerF90_ = 0;  ///< of the dielectric layer over the diffuse base
+    Vec3 f0_{0};                 ///< Schlick part of reflection, its shares of the material multiplied in
+    float f90_ = 0;
+    Vec3 boundaryTint_{0};       ///< weight of the exact Fresnel term in reflection
+    Vec3 transmissionTint_{0};   ///< and of what it lets through
+
+    Vec3 albedo_[kSlots] = {Vec3(0), Vec3(0), Vec3(0)};
+    float probability_[kSlots] = {0, 0, 0};
 };
 
 }  // namespace lumi
