@@ -36,7 +36,7 @@ struct Png {
 /// Throws Error(BadInput) naming the file: not a PNG, damaged, truncated, larger than 32768 a side.
 Png decodePng(std::span<const uint8_t> bytes, const std::string& name);
 Png readPng(const std::filesystem::path& path);
-/// Only the texts; pixels are skipped.
+/// Only the texts that stand before the pixels, as ours do.
 PngTexts readPngTexts(const std::filesystem::path& path);
 
 }  // namespace lumi

@@ -34,13 +34,13 @@ private:
     void closeInput();
     int waitForExit();
 
-    std::filesystem::path path_;
+    std::filesystem::path path_, partial_;  ///< where it is in the end; where it is written
     Extent2 extent_;
     pid_t process_ = -1;
     int input_ = -1;     ///< our end of ffmpeg's standard input
     int messages_ = -1;  ///< file in memory that takes ffmpeg's standard error
     int64_t frames_ = 0;
-    std::vector<uint8_t> row_;
+    std::vector<uint8_t> pixels_;
 };
 
 }  // namespace lumi
