@@ -57,26 +57,4 @@ void convolveClamped(ConstFloatPlane in, std::span<const float> horizontal, std:
     });
 }
 
-Image convolveInside(ConstFloatPlane in, std::span<const float> weights) {
-    const int taps = static_cast<int>(weights.size());
-    const int width = in.width - taps + 1, height = in.height - taps + 1;
-    if (width <= 0 || height <= 0) return {};
-    const MeasureKernels& kernels = measureKernels();
-    Image rows({width, in.height}, 1), out({width, height}, 1);
-    parallelRanges(in.height, 16, [&](int64_t begin, int64_t end) {
-        for (int64_t y = begin; y < end; ++y)
-            kernels.convolveRow(in.row(static_cast<int>(y)), weights.data(), taps,
-                                rows.plane(0).row(static_cast<int>(y)), width);
-    });
-    parallelRanges(height, 16, [&](int64_t begin, int64_t end) {
-        std::vector<const float*> tapRows(static_cast<size_t>(taps));
-        for (int64_t y = begin; y < end; ++y) {
-            for (int k = 0; k < taps; ++k)
-                tapRows[static_cast<size_t>(k)] = rows.plane(0).row(static_cast<int>(y) + k);
-            kernels.convolveColumn(tapRows.data(), weights.data(), taps, out.plane(0).row(static_cast<int>(y)), width);
-        }
-    });
-    return out;
-}
-
 }  // namespace lumi

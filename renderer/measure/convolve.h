@@ -14,7 +14,4 @@ std::vector<float> gaussianWeights(int taps, double sigma);
 void convolveClamped(ConstFloatPlane in, std::span<const float> horizontal, std::span<const float> vertical,
                      FloatPlane out);
 
-/// Separable convolution where the window lies inside: the output is smaller by taps - 1 in each direction.
-Image convolveInside(ConstFloatPlane in, std::span<const float> weights);
-
 }  // namespace lumi

@@ -10,8 +10,8 @@ namespace lumi {
 /// Two images to compare: linear RGB of one extent. Pixels that are not finite in either image, or that a mask leaves
 /// out, do not count in any metric; they are 0 in error maps.
 struct ImagePair {
-    Image image, reference;  ///< 3 channels
-    Image mask;              ///< 1 channel, above 0.5 counts; empty: everything counts
+    Image image{}, reference{};  ///< 3 channels
+    Image mask{};            ///< 1 channel, above 0.5 counts; empty: everything counts
     float exposureEv = 0;    ///< for metrics on tone-mapped images: 2^EV, clamp, sRGB
 
     /// Checks extents, finds and blanks non-finite pixels (both images get 0 there). Call once before measuring.
@@ -20,7 +20,7 @@ struct ImagePair {
     bool counts(int x, int y) const { return valid.empty() || valid.at(0, x, y) > 0.5f; }
 
     int64_t nonFinitePixels = 0;  ///< of the two together, set by prepare()
-    Image valid;                  ///< set by prepare() where not everything counts
+    Image valid{};                ///< set by prepare() where not everything counts
 };
 
 /// A metric's number and its error map (1 channel, extent of the images; empty if not asked for or not defined).

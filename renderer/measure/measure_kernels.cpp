@@ -6,21 +6,42 @@ namespace lumi::LUMI_ISA {
 const MeasureKernels& measureTable();
 namespace {
 
+/// Sums stay in registers for a chunk of pixels while the taps pass over it.
+constexpr int kChunk = 64;
+
 void convolveRow(const float* in, const float* weights, int taps, float* out, int width) {
-    for (int x = 0; x < width; ++x) out[x] = 0;
-    for (int k = 0; k < taps; ++k) {
-        const float weight = weights[k];
-        const float* shifted = in + k;
-        for (int x = 0; x < width; ++x) out[x] += weight * shifted[x];
+    int x = 0;
+    for (; x + kChunk <= width; x += kChunk) {
+        float sums[kChunk] = {};
+        for (int k = 0; k < taps; ++k) {
+            const float weight = weights[k];
+            const float* shifted = in + x + k;
+            for (int i = 0; i < kChunk; ++i) sums[i] += weight * shifted[i];
+        }
+        for (int i = 0; i < kChunk; ++i) out[x + i] = sums[i];
+    }
+    for (; x < width; ++x) {
+        float sum = 0;
+        for (int k = 0; k < taps; ++k) sum += weights[k] * in[x + k];
+        out[x] = sum;
     }
 }
 
 void convolveColumn(const float* const* rows, const float* weights, int taps, float* out, int width) {
-    for (int x = 0; x < width; ++x) out[x] = 0;
-    for (int k = 0; k < taps; ++k) {
-        const float weight = weights[k];
-        const float* row = rows[k];
-        for (int x = 0; x < width; ++x) out[x] += weight * row[x];
+    int x = 0;
+    for (; x + kChunk <= width; x += kChunk) {
+        float sums[kChunk] = {};
+        for (int k = 0; k < taps; ++k) {
+            const float weight = weights[k];
+            const float* row = rows[k] + x;
+            for (int i = 0; i < kChunk; ++i) sums[i] += weight * row[i];
+        }
+        for (int i = 0; i < kChunk; ++i) out[x + i] = sums[i];
+    }
+    for (; x < width; ++x) {
+        float sum = 0;
+        for (int k = 0; k < taps; ++k) sum += weights[k] * rows[k][x];
+        out[x] = sum;
     }
 }
 

@@ -13,29 +13,56 @@ namespace {
 
 constexpr int kWindow = 11;
 
+/// Horizontally smoothed rows of a, b, a*a, b*b, a*b: a ring of the window's height for each.
+class SmoothedRows {
+public:
+    SmoothedRows(ConstFloatPlane a, ConstFloatPlane b)
+        : a_(a), b_(b), product_(static_cast<size_t>(a.width)), ring_({a.width - kWindow + 1, kWindow}, 5) {}
+
+    void add(int y) {
+        const MeasureKernels& kernels = measureKernels();
+        const float *rowA = a_.row(y), *rowB = b_.row(y);
+        const auto smooth = [&](const float* row, int quantity) {
+            kernels.convolveRow(row, weights_.data(), kWindow, ring_.plane(quantity).row(y % kWindow), ring_.width());
+        };
+        const auto smoothProduct = [&](const float* p, const float* q, int quantity) {
+            for (int x = 0; x < a_.width; ++x) product_[static_cast<size_t>(x)] = p[x] * q[x];
+            smooth(product_.data(), quantity);
+        };
+        smooth(rowA, 0);
+        smooth(rowB, 1);
+        smoothProduct(rowA, rowA, 2);
+        smoothProduct(rowB, rowB, 3);
+        smoothProduct(rowA, rowB, 4);
+    }
+    /// Window sums of the rows [y, y + kWindow), all added before.
+    void window(int y, int quantity, float* out) const {
+        const float* rows[kWindow];
+        for (int k = 0; k < kWindow; ++k) rows[k] = ring_.plane(quantity).row((y + k) % kWindow);
+        measureKernels().convolveColumn(rows, weights_.data(), kWindow, out, ring_.width());
+    }
+
+private:
+    ConstFloatPlane a_, b_;
+    std::vector<float> weights_ = gaussianWeights(kWindow, 1.5), product_;
+    Image ring_;
+};
+
 /// SSIM and its contrast-structure part at every window that lies inside; two channels.
 Image ssimMaps(ConstFloatPlane a, ConstFloatPlane b) {
-    const std::vector<float> weights = gaussianWeights(kWindow, 1.5);
-    const Extent2 extent{a.width, a.height};
-    Image products(extent, 3);
-    parallelRanges(a.height, 16, [&](int64_t begin, int64_t end) {
-        for (int y = static_cast<int>(begin); y < end; ++y) {
-            const float *ra = a.row(y), *rb = b.row(y);
-            float *aa = products.plane(0).row(y), *bb = products.plane(1).row(y), *ab = products.plane(2).row(y);
-            for (int x = 0; x < a.width; ++x) aa[x] = ra[x] * ra[x], bb[x] = rb[x] * rb[x], ab[x] = ra[x] * rb[x];
+    Image maps({a.width - kWindow + 1, a.height - kWindow + 1}, 2);
+    parallelRanges(maps.height(), 64, [&](int64_t begin, int64_t end) {
+        const int first = static_cast<int>(begin);
+        SmoothedRows rows(a, b);
+        Image sums({maps.width(), 5}, 1);
+        for (int y = first; y < first + kWindow - 1; ++y) rows.add(y);
+        for (int y = first; y < end; ++y) {
+            rows.add(y + kWindow - 1);
+            float* s[5];
+            for (int q = 0; q < 5; ++q) rows.window(y, q, s[q] = sums.plane(0).row(q));
+            measureKernels().ssimRow(s[0], s[1], s[2], s[3], s[4], maps.plane(0).row(y), maps.plane(1).row(y),
+                                     maps.width());
         }
-    });
-    const Image& p = products;
-    const Image meanA = convolveInside(a, weights), meanB = convolveInside(b, weights);
-    const Image squareA = convolveInside(p.plane(0), weights), squareB = convolveInside(p.plane(1), weights);
-    const Image product = convolveInside(p.plane(2), weights);
-    Image maps(meanA.extent(), 2);
-    const MeasureKernels& kernels = measureKernels();
-    parallelRanges(maps.height(), 16, [&](int64_t begin, int64_t end) {
-        for (int y = static_cast<int>(begin); y < end; ++y)
-            kernels.ssimRow(meanA.plane(0).row(y), meanB.plane(0).row(y), squareA.plane(0).row(y),
-                            squareB.plane(0).row(y), product.plane(0).row(y), maps.plane(0).row(y),
-                            maps.plane(1).row(y), maps.width());
     });
     return maps;
 }
