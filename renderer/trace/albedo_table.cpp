@@ -11,8 +11,9 @@
 namespace lumi {
 namespace {
 
+// Rows crowd quadratically towards the smooth end: with roughness the albedos change like its square.
 float roughnessOf(int row) {
-    return kTabledRoughness + (1 - kTabledRoughness) * static_cast<float>(row) / (kAlbedoRows - 1);
+    return kTabledRoughness + (1 - kTabledRoughness) * sqr(static_cast<float>(row) / (kAlbedoRows - 1));
 }
 
 Vec3 directionAt(float cosTheta) {
@@ -20,26 +21,28 @@ Vec3 directionAt(float cosTheta) {
     return {std::sqrt(std::max(0.0f, 1 - cosTheta * cosTheta)), 0, cosTheta};
 }
 
-constexpr int kHeights = 24, kAzimuths = 12;
-
 /// Mean of value(h) over the facet normals that `wo` sees, by the midpoint rule over the square that
-/// Ggx::sampleVisibleNormal() maps. The integrands are even in the azimuth, so half a turn is enough.
-template <class Value>
+/// Ggx::sampleVisibleNormal() maps, Heights by Azimuths. The integrands are even in the azimuth, so half a turn is
+/// enough; they fall steeply where reflected light grazes, at the far end of the heights, so heights crowd there.
+template <int Heights, int Azimuths, class Value>
 Vec2 meanOverVisibleNormals(const Ggx& ggx, const Vec3& wo, const Value& value) {
-    static const std::array<Vec2, kAzimuths> azimuths = [] {
-        std::array<Vec2, kAzimuths> table;
-        for (int i = 0; i < kAzimuths; ++i) {
-            const float phi = kPi * (static_cast<float>(i) + 0.5f) / kAzimuths;
+    static const std::array<Vec2, Azimuths> azimuths = [] {
+        std::array<Vec2, Azimuths> table;
+        for (int i = 0; i < Azimuths; ++i) {
+            const float phi = kPi * (static_cast<float>(i) + 0.5f) / Azimuths;
             table[static_cast<size_t>(i)] = {std::cos(phi), std::sin(phi)};
         }
         return table;
     }();
     const Vec3 stretched = ggx.stretched(wo);
     Vec2 sum(0);
-    for (int i = 0; i < kHeights; ++i)
-        for (const Vec2& azimuth : azimuths)
-            sum += value(ggx.visibleNormal(stretched, (static_cast<float>(i) + 0.5f) / kHeights, azimuth.x, azimuth.y));
-    return sum / float(kHeights * kAzimuths);
+    for (int i = 0; i < Heights; ++i) {
+        const float t = 1 - (static_cast<float>(i) + 0.5f) / Heights;
+        Vec2 ring(0);
+        for (const Vec2& azimuth : azimuths) ring += value(ggx.visibleNormal(stretched, 1 - t * t, azimuth.x, azimuth.y));
+        sum += 2 * t * ring;
+    }
+    return sum / float(Heights * Azimuths);
 }
 
 /// Masking of the far direction given the near one: what reflection by facet h keeps.
@@ -63,7 +66,8 @@ Vec2 bilinear(const std::array<std::array<Vec2, Columns>, kAlbedoRows>& table, R
 }  // namespace
 
 RoughnessRow::RoughnessRow(float roughness) {
-    const float position = (roughness - kTabledRoughness) * ((kAlbedoRows - 1) / (1 - kTabledRoughness));
+    const float above = std::max(0.0f, (roughness - kTabledRoughness) / (1 - kTabledRoughness));
+    const float position = std::sqrt(above) * (kAlbedoRows - 1);
     row = std::clamp(static_cast<int>(position), 0, kAlbedoRows - 2);
     fraction = std::clamp(position - static_cast<float>(row), 0.0f, 1.0f);
 }
@@ -81,7 +85,7 @@ SchlickAlbedo::SchlickAlbedo() {
             // Columns are even in the root of the cosine: grazing angles change fastest.
             const Vec3 wo = directionAt(sqr(static_cast<float>(column) / (kColumns - 1)));
             const float lambdaO = ggx.lambda(wo);
-            entries[static_cast<size_t>(column)] = meanOverVisibleNormals(ggx, wo, [&](const Vec3& h) {
+            entries[static_cast<size_t>(column)] = meanOverVisibleNormals<24, 12>(ggx, wo, [&](const Vec3& h) {
                 const float share = reflectedShare(ggx, wo, lambdaO, h);
                 const float s = schlickWeight(glm::dot(wo, h));
                 return Vec2(share * (1 - s), share * s);
@@ -123,15 +127,18 @@ DielectricAlbedo::DielectricAlbedo(float eta) {
         for (int column = 0; column < kColumns; ++column) {
             const Vec3 wo = directionAt(cosineAt(static_cast<float>(column)));
             const float lambdaO = ggx.lambda(wo);
+            const auto throughFacet = [&](const Vec3& h) {
+                const float f = fresnelDielectric(std::min(glm::dot(wo, h), 1.0f), eta);
+                Vec2 value(f * reflectedShare(ggx, wo, lambdaO, h), 0);
+                Vec3 wi;
+                if (f < 1 && refract(wo, h, eta, wi) && wi.z < 0)
+                    value.y = (1 - f) * (1 + lambdaO) * maskingBothSides(lambdaO, ggx.lambda(wi));
+                return value;
+            };
+            // The kink at the critical angle wants a finer grid.
             directional_[static_cast<size_t>(row)][static_cast<size_t>(column)] =
-                meanOverVisibleNormals(ggx, wo, [&](const Vec3& h) {
-                    const float f = fresnelDielectric(std::min(glm::dot(wo, h), 1.0f), eta);
-                    Vec2 value(f * reflectedShare(ggx, wo, lambdaO, h), 0);
-                    Vec3 wi;
-                    if (f < 1 && refract(wo, h, eta, wi) && wi.z < 0)
-                        value.y = (1 - f) * (1 + lambdaO) * maskingBothSides(lambdaO, ggx.lambda(wi));
-                    return value;
-                });
+                eta < 1 ? meanOverVisibleNormals<36, 16>(ggx, wo, throughFacet)
+                        : meanOverVisibleNormals<24, 12>(ggx, wo, throughFacet);
         }
     }
 }
@@ -141,14 +148,14 @@ DielectricAlbedo::DielectricAlbedo(float eta) {
 float DielectricAlbedo::columnOf(float cosTheta) const {
     const float c = std::clamp(cosTheta, 0.0f, 1.0f);
     if (cosCritical_ == 0) return std::sqrt(c) * (kColumns - 1);
-    if (c <= cosCritical_) return (1 - std::sqrt(std::max(0.0f, 1 - c * invCritical_))) * criticalColumn_;
+    if (c <= cosCritical_) return std::asin(std::sqrt(std::min(c * invCritical_, 1.0f))) * (2 * kInvPi) * criticalColumn_;
     const float cosT = std::sqrt(std::max(0.0f, (c * c - cosCritical_ * cosCritical_) * invBeyond_));
     return criticalColumn_ + std::min(cosT, 1.0f) * (kColumns - 1 - criticalColumn_);
 }
 
 float DielectricAlbedo::cosineAt(float column) const {
     if (cosCritical_ == 0) return sqr(column / (kColumns - 1));
-    if (column <= criticalColumn_) return cosCritical_ * (1 - sqr(1 - column / criticalColumn_));
+    if (column <= criticalColumn_) return cosCritical_ * sqr(std::sin(column / criticalColumn_ * (kPi / 2)));
     const float cosT = (column - criticalColumn_) / (kColumns - 1 - criticalColumn_);
     return std::sqrt(cosCritical_ * cosCritical_ + cosT * cosT / invBeyond_);
 }
