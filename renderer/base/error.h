@@ -18,10 +18,10 @@ enum class ErrorKind {
 /// `atrium.json:12:9: "levels" is out of range; expected 1 to 8, found 12`.
 /// Broken promises between our own functions are asserts, not Errors.
 struct ErrorText {
-    std::string what;      ///< the fault in one clause
-    std::string where;     ///< file, file:line:column, or file + JSON path; may be empty
-    std::string expected;  ///< may be empty
-    std::string found;     ///< may be empty
+    std::string what{};    ///< the fault in one clause
+    std::string where{};    ///< file, file:line:column, or file + JSON path; may be empty
+    std::string expected{}; ///< may be empty
+    std::string found{};    ///< may be empty
 };
 
 class Error : public std::runtime_error {
