@@ -1,0 +1,140 @@
+#include "scene/defaults.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <memory>
+
+#include "base/parallel.h"
+#include "scene/deform.h"
+#include "scene/node_pose.h"
+
+namespace lumi {
+namespace {
+
+constexpr int kRays = 48;
+constexpr int kEnclosing = kRays * 3 / 4;
+
+/// Directions spread evenly over the sphere by the golden angle.
+std::array<Vec3, kRays> spreadDirections() {
+    std::array<Vec3, kRays> directions;
+    for (int i = 0; i < kRays; ++i) {
+        const float y = 1 - (2 * static_cast<float>(i) + 1) / kRays;
+        const float r = std::sqrt(1 - y * y), angle = 2.39996323f * static_cast<float>(i);
+        directions[static_cast<size_t>(i)] = {r * std::cos(angle), y, r * std::sin(angle)};
+    }
+    return directions;
+}
+
+/// Bits of the rays from the origin that meet the triangle a b c. A ray through the corner pyramid has the three edge
+/// planes on one side; the triangle's own plane tells ahead from behind.
+uint64_t raysThrough(const std::array<Vec3, kRays>& directions, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 ab = glm::cross(a, b), bc = glm::cross(b, c), ca = glm::cross(c, a);
+    const float volume = glm::dot(a, bc);
+    uint64_t hits = 0;
+    for (size_t i = 0; i < kRays; ++i) {
+        const float u = glm::dot(directions[i], ab), v = glm::dot(directions[i], bc), w = glm::dot(directions[i], ca);
+        const bool ahead = volume > 0 ? u >= 0 && v >= 0 && w >= 0 : volume < 0 && u <= 0 && v <= 0 && w <= 0;
+        hits |= static_cast<uint64_t>(ahead) << i;
+    }
+    return hits;
+}
+
+/// Bits of the rays from `origin` that meet the instance at rest.
+void traceInstance(const Scene& scene, const NodePose& pose, const Instance& instance, const Vec3& origin,
+                   const std::array<Vec3, kRays>& directions, std::atomic<uint64_t>& hits) {
+    const Mesh& mesh = *instance.mesh;
+    const bool skinned = instance.skin >= 0 && !mesh.skin.empty();
+    Mat4 worldFromObject(1);
+    DeformedVertices deformed;
+    if (instance.node >= 0 && !skinned) worldFromObject = pose.worldFromNode[static_cast<size_t>(instance.node)];
+    if (mesh.deforms()) {
+        std::vector<Mat4> joints;
+        if (skinned) joints = jointMatrices(scene.skins[static_cast<size_t>(instance.skin)], pose);
+        deformed = deform(mesh, instance.node >= 0 ? pose.morphWeights[static_cast<size_t>(instance.node)]
+                                                   : std::vector<float>(), joints);
+    }
+    const std::vector<Vec3>& positions = mesh.deforms() ? deformed.positions : mesh.positions;
+    parallelRanges(static_cast<int64_t>(mesh.triangles.size()), 4096, [&](int64_t begin, int64_t end) {
+        if (std::popcount(hits.load(std::memory_order_relaxed)) >= kEnclosing) return;
+        uint64_t found = 0;
+        for (int64_t i = begin; i < end; ++i) {
+            const UVec3 t = mesh.triangles[static_cast<size_t>(i)];
+            const auto corner = [&](uint32_t v) { return transformPoint(worldFromObject, positions[v]) - origin; };
+            found |= raysThrough(directions, corner(t.x), corner(t.y), corner(t.z));
+        }
+        hits.fetch_or(found, std::memory_order_relaxed);
+    });
+}
+
+/// Distance from the centre of a box at which a square image of this half-angle, looking along -back, holds it all.
+float framingDistance(const Vec3& halfSize, const Mat3& axes, float halfAngle) {
+    const float slope = std::tan(halfAngle);
+    float distance = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 p = halfSize * Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+        const float side = std::max(std::abs(glm::dot(p, axes[0])), std::abs(glm::dot(p, axes[1])));
+        distance = std::max(distance, side / slope + glm::dot(p, axes[2]));
+    }
+    return distance;
+}
+
+}  // namespace
+
+float enclosure(const Scene& scene, const Vec3& origin) {
+    const std::array<Vec3, kRays> directions = spreadDirections();
+    const NodePose pose = poseNodes(scene, {});
+    std::atomic<uint64_t> hits{0};
+    for (const Instance& instance : scene.instances) {
+        // Once enough rays hit, more cannot change the answer.
+        if (std::popcount(hits.load()) >= kEnclosing) break;
+        traceInstance(scene, pose, instance, origin, directions, hits);
+    }
+    return static_cast<float>(std::popcount(hits.load())) / kRays;
+}
+
+Camera defaultCamera(const Scene& scene) {
+    Camera camera;
+    const Bounds3 bounds = scene.restBounds();
+    if (bounds.empty() || !isFinite(bounds.size())) return camera;
+    const Vec3 centre = bounds.centre(), half = glm::max(0.5f * bounds.size(), Vec3(1e-6f));
+    if (enclosure(scene, centre) >= 0.75f) {
+        camera.eye = centre;
+        camera.target = centre + (half.x >= half.z ? Vec3(half.x, 0, 0) : Vec3(0, 0, -half.z));
+    } else {
+        const Vec3 from = glm::normalize(Vec3(0.35f, 0.22f, 1));
+        const Mat3 axes(lookAt(from, Vec3(0)));
+        camera.target = centre;
+        camera.eye = centre + from * (1.08f * framingDistance(half, axes, radians(0.5f * camera.fovYDeg)));
+    }
+    camera.focus = std::clamp(glm::distance(camera.eye, camera.target), 1e-3f, 1e6f);
+    return camera;
+}
+
+bool hasLight(const Scene& scene) {
+    if (!scene.lights.empty() || scene.environment.visible()) return true;
+    for (const Instance& instance : scene.instances) {
+        if (instance.material >= 0) {
+            if (scene.materials[static_cast<size_t>(instance.material)].emits()) return true;
+            continue;
+        }
+        if (instance.mesh->triangleMaterial.empty()) {
+            if (scene.materials[instance.mesh->material].emits()) return true;
+            continue;
+        }
+        for (const uint32_t material : instance.mesh->triangleMaterial)
+            if (scene.materials[material].emits()) return true;
+    }
+    return false;
+}
+
+void addDefaults(Scene& scene, MessageLog& log, bool allowSky) {
+    if (scene.cameras.empty()) scene.cameras.push_back({defaultCamera(scene), -1, {}, Interpolation::CatmullRom});
+    if (!allowSky || hasLight(scene)) return;
+    scene.environment.image = std::make_shared<const Image>(makeDefaultSky());
+    log.warning(scene.path + ": no light and no emission; lit by the built-in sky");
+}
+
+}  // namespace lumi

@@ -1,0 +1,21 @@
+#pragma once
+#include "base/messages.h"
+#include "scene/scene.h"
+
+namespace lumi {
+
+/// The camera of a scene that has none, named "default", with a vertical angle of 45 degrees. If three of four rays from
+/// the centre of the bounds hit something it stands there and looks along the longer horizontal axis; otherwise it
+/// frames the bounds from the front, a little from the right and above.
+Camera defaultCamera(const Scene& scene);
+
+/// Share of directions from `origin` in which something stands, of a few dozen spread evenly over the sphere.
+float enclosure(const Scene& scene, const Vec3& origin);
+
+/// True if anything in the scene shines: a light, an environment, or an emissive material that is in use.
+bool hasLight(const Scene& scene);
+
+/// Gives the scene a camera if it has none and, if `allowSky` and nothing shines, the built-in sky and a warning.
+void addDefaults(Scene& scene, MessageLog& log, bool allowSky);
+
+}  // namespace lumi

@@ -1,0 +1,75 @@
+#include "scene/light_body.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/procedural/primitives.h"
+
+namespace lumi {
+namespace {
+
+constexpr const char* kBodyMaterial = "light body";
+
+double areaOf(const Mesh& mesh) {
+    double area = 0;
+    for (const UVec3& t : mesh.triangles)
+        area += 0.5 * glm::length(glm::cross(mesh.positions[t.y] - mesh.positions[t.x],
+                                             mesh.positions[t.z] - mesh.positions[t.x]));
+    return area;
+}
+
+Mesh sphereBody(float radius) {
+    // Facets lie inside the sphere. The mean solid angle of a convex body goes with its area, so that is made exact.
+    Mesh mesh = sphereMesh(radius, 96, 48);
+    const double wanted = 4 * 3.14159265358979323846 * double(radius) * radius;
+    const auto growth = static_cast<float>(std::sqrt(wanted / areaOf(mesh)));
+    for (Vec3& p : mesh.positions) p *= growth;
+    return mesh;
+}
+
+/// Material that bodies wear: black, since what they emit is the light's.
+int bodyMaterial(Scene& scene) {
+    for (size_t i = 0; i < scene.materials.size(); ++i)
+        if (scene.materials[i].name == kBodyMaterial) return static_cast<int>(i);
+    Material black;
+    black.name = kBodyMaterial;
+    black.baseColor = Vec3(0);
+    black.specular = 0;
+    black.roughness = 1;
+    scene.materials.push_back(black);
+    return static_cast<int>(scene.materials.size()) - 1;
+}
+
+bool sameShape(const Mesh& a, const Mesh& b) { return a.positions == b.positions; }
+
+}  // namespace
+
+std::shared_ptr<const Mesh> lightBody(const Light& light) {
+    Mesh mesh;
+    switch (light.type) {
+        case LightType::Rectangle: mesh = rectangleMesh(light.size.x, light.size.y, Facing::MinusZ); break;
+        case LightType::Disk: mesh = diskMesh(light.radius, 0, Facing::MinusZ, 128); break;
+        case LightType::Sphere: mesh = sphereBody(light.radius); break;
+        default: return nullptr;
+    }
+    mesh.name = light.name;
+    return std::make_shared<const Mesh>(std::move(mesh));
+}
+
+void addLightBodies(Scene& scene) {
+    for (size_t i = 0; i < scene.lights.size(); ++i) {
+        std::shared_ptr<const Mesh> body = lightBody(scene.lights[i]);
+        if (!body) continue;
+        const auto shown = std::find_if(scene.instances.begin(), scene.instances.end(),
+                                        [&](const Instance& instance) { return instance.light == static_cast<int>(i); });
+        if (shown != scene.instances.end()) {
+            if (!sameShape(*shown->mesh, *body)) shown->mesh = std::move(body);
+            continue;
+        }
+        const int material = bodyMaterial(scene);
+        scene.instances.push_back({scene.lights[i].name, std::move(body), scene.lights[i].node, -1, material,
+                                   static_cast<int>(i)});
+    }
+}
+
+}  // namespace lumi

@@ -1,0 +1,17 @@
+#pragma once
+#include <memory>
+
+#include "scene/scene.h"
+
+namespace lumi {
+
+/// The visible shape of a rectangle, disk or sphere light in the light's own space (fronts where it emits), or null for
+/// lights without extent. Flat bodies are exact; a sphere's facets have its exact area.
+std::shared_ptr<const Mesh> lightBody(const Light& light);
+
+/// Gives every light with extent that has none an instance that shows it (Instance::light, on the light's node), all
+/// wearing one black material named "light body". Bodies that stand already are made again if their light's size
+/// changed; the rest of the scene keeps its order.
+void addLightBodies(Scene& scene);
+
+}  // namespace lumi

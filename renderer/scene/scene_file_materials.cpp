@@ -1,0 +1,189 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <mutex>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/parallel.h"
+#include "image/decode.h"
+#include "scene/procedural/procedural.h"
+#include "scene/scene_file_parts.h"
+
+namespace lumi {
+
+const std::vector<TextureKey> kTextureKeys{
+    {"base-color-texture", true, &Material::baseColorTexture, "RGB colour (sRGB), A alpha; multiplies base-color."},
+    {"metallic-roughness-texture", false, &Material::metallicRoughnessTexture, "G roughness, B metallic."},
+    {"normal-texture", false, &Material::normalTexture, "Tangent-space normals."},
+    {"emission-texture", true, &Material::emissionTexture, "RGB (sRGB); multiplies emission."},
+    {"specular-texture", false, &Material::specularTexture, "A weighs the dielectric reflection."},
+    {"specular-color-texture", true, &Material::specularColorTexture, "RGB (sRGB); multiplies specular-color."},
+    {"transmission-texture", false, &Material::transmissionTexture, "R; multiplies transmission."},
+};
+
+void TexturePlacement::describe(ParameterVisitor& v) {
+    v.number("scale-u", scale.x, {.label = "Scale u", .min = -1e4, .max = 1e4,
+                                  .help = "Repetitions along u for each unit of uv.", .redo = Redo::Samples});
+    v.number("scale-v", scale.y, {.label = "Scale v", .min = -1e4, .max = 1e4,
+                                  .help = "Repetitions along v for each unit of uv.", .redo = Redo::Samples});
+    v.number("offset-u", offset.x, {.label = "Offset u", .min = -1e4, .max = 1e4, .help = "Shift along u.",
+                                    .redo = Redo::Samples});
+    v.number("offset-v", offset.y, {.label = "Offset v", .min = -1e4, .max = 1e4, .help = "Shift along v.",
+                                    .redo = Redo::Samples});
+    v.number("rotate-deg", rotateDeg, {.label = "Rotation", .min = -360, .max = 360, .unit = "deg",
+                                       .help = "Counter-clockwise, as KHR_texture_transform defines it.",
+                                       .redo = Redo::Samples});
+    v.integer("uv-set", uvSet, {.label = "UV set", .min = 0, .max = 1, .help = "Which texture coordinates to use.",
+                                .redo = Redo::Samples});
+    v.choice("wrap", wrap, {.label = "Wrap", .options = {"repeat", "mirror", "clamp"},
+                            .help = "What lies outside of 0 to 1.", .redo = Redo::Samples});
+    v.choice("filter", filter, {.label = "Filter", .options = {"nearest", "linear"},
+                                .help = "How texels are interpolated.", .redo = Redo::Samples});
+}
+
+namespace {
+
+using ImagePtr = std::shared_ptr<const TextureImage>;
+
+/// A texture that some material asked for. Images are decoded together, in parallel, once all materials are read.
+struct TextureRequest {
+    const JsonValue* value;           ///< for messages
+    std::string file;                 ///< as written, or empty
+    std::unique_ptr<ProceduralTexture> generator;
+    bool srgb;
+    int material;                     ///< index into scene.materials
+    const TextureKey* key;
+    Texture placement;                ///< all but the image
+    size_t image = 0;                 ///< index into the distinct images
+};
+
+Texture placedTexture(const TexturePlacement& placement) {
+    Texture texture;
+    texture.wrapU = texture.wrapV = placement.wrap;
+    texture.filter = placement.filter;
+    texture.uvSet = placement.uvSet;
+    texture.offset = placement.offset;
+    texture.scale = placement.scale;
+    texture.rotation = radians(placement.rotateDeg);
+    return texture;
+}
+
+/// `"wood.png"`, or `{"file": "wood.png", "scale": [2, 2]}`, or `{"checker": {"squares": 8}, "scale": [2, 2]}`.
+TextureRequest readTexture(SceneFileContext& context, const JsonValue& value, const TextureKey& key, int material) {
+    TextureRequest request{&value, {}, nullptr, key.srgb, material, &key, {}};
+    if (value.isString()) {
+        request.file = readText(context.tree, value, key.key);
+        return request;
+    }
+    if (!value.isObject()) refuseValue(context.tree, value, key.key, "a file name or an object");
+    ObjectReader reader(context.tree, value, key.key);
+    TexturePlacement placement;
+    if (const auto file = reader.text("file")) request.file = *file;
+    for (const ProceduralTextureEntry& entry : proceduralTextureCatalog()) {
+        const JsonValue* settings = reader.find(entry.name);
+        if (!settings) continue;
+        if (request.generator || !request.file.empty())
+            reader.fail(value.at, fmt::format("\"{}\" names two images", key.key), "one of \"file\" or a generator");
+        request.generator = entry.make();
+        ObjectReader parameters(context.tree, *settings, entry.name);
+        parameters.parameters([&](ParameterVisitor& v) { request.generator->describe(v); });
+        parameters.finish();
+    }
+    if (const JsonValue* scale = reader.find("scale"); scale && scale->isNumber())
+        placement.scale = Vec2(static_cast<float>(readNumber(context.tree, *scale, "scale", -1e4, 1e4)));
+    else if (scale) placement.scale = *reader.pair("scale", -1e4, 1e4);
+    placement.offset = reader.pair("offset", -1e4, 1e4).value_or(Vec2(0));
+    reader.parameters([&](ParameterVisitor& v) { placement.describe(v); }, {},
+                      {"scale-u", "scale-v", "offset-u", "offset-v"});
+    reader.finish();
+    if (!request.generator && request.file.empty())
+        reader.fail(value.at, fmt::format("\"{}\" names no image", key.key), "\"file\" or a generator");
+    request.placement = placedTexture(placement);
+    return request;
+}
+
+ImagePtr decodeFile(const std::vector<uint8_t>& bytes, const std::string& name, bool srgb) {
+    Image8 decoded = decodeImage8(bytes, name);
+    auto image = std::make_shared<TextureImage>();
+    image->name = name;
+    image->srgb = srgb;
+    image->levels.push_back({decoded.extent, std::move(decoded.rgba), {}});
+    buildMips(*image);
+    return image;
+}
+
+/// Distinct images of all requests: the same file used as colour and as data is decoded for each use.
+void loadTextures(SceneFileContext& context, std::vector<TextureRequest>& requests) {
+    std::map<std::pair<std::string, bool>, size_t> byFile;
+    std::vector<const TextureRequest*> distinct;
+    for (TextureRequest& request : requests) {
+        if (request.generator) {
+            request.image = distinct.size();
+            distinct.push_back(&request);
+            continue;
+        }
+        const auto [place, isNew] = byFile.emplace(std::pair(request.file, request.srgb), distinct.size());
+        request.image = place->second;
+        if (isNew) distinct.push_back(&request);
+    }
+
+    std::vector<ImagePtr> images(distinct.size());
+    std::vector<std::string> digests(distinct.size());
+    std::vector<std::optional<Error>> errors(distinct.size());
+    parallelFor(static_cast<int64_t>(distinct.size()), [&](int64_t index) {
+        const auto i = static_cast<size_t>(index);
+        const TextureRequest& request = *distinct[i];
+        try {
+            if (request.generator) {
+                auto image = std::make_shared<TextureImage>(request.generator->build());
+                buildMips(*image);
+                images[i] = std::move(image);
+                return;
+            }
+            const std::filesystem::path path = context.resolve(request.file);
+            const std::vector<uint8_t> bytes = readFile(path);
+            digests[i] = digest(bytes);
+            images[i] = decodeFile(bytes, path.string(), request.srgb);
+        } catch (const Error& error) {
+            errors[i] = error;
+        }
+    });
+    // The first in document order is reported, whichever thread met its error first.
+    for (size_t i = 0; i < errors.size(); ++i)
+        if (errors[i])
+            throw Error(errors[i]->kind(), {fmt::format("\"{}\": {}", distinct[i]->key->key, errors[i]->what()),
+                                            context.tree.where(distinct[i]->value->at), "", ""});
+    for (const std::string& text : digests) context.digests += text;
+    for (TextureRequest& request : requests) {
+        Texture& texture = context.scene.materials[static_cast<size_t>(request.material)].*request.key->member;
+        texture = request.placement;
+        texture.image = images[request.image];
+    }
+}
+
+}  // namespace
+
+void readMaterials(SceneFileContext& context, const JsonValue* section) {
+    std::vector<TextureRequest> requests;
+    for (const JsonMember& member : membersOf(context, section, "materials")) {
+        const int index = static_cast<int>(context.scene.materials.size());
+        context.scene.materials.emplace_back();
+        ObjectReader reader(context.tree, member.value, member.key);
+        Material& material = context.scene.materials.back();
+        material.name = member.key;
+        for (const TextureKey& key : kTextureKeys)
+            if (const JsonValue* value = reader.find(key.key))
+                requests.push_back(readTexture(context, *value, key, index));
+        reader.parameters([&](ParameterVisitor& v) { material.describe(v); });
+        reader.finish();
+        context.materials[member.key] = index;
+    }
+    if (!requests.empty()) context.report(0.05f, fmt::format("decoding {} textures", requests.size()));
+    loadTextures(context, requests);
+    context.checkStop();
+}
+
+}  // namespace lumi
