@@ -1,6 +1,5 @@
 #pragma once
 #include <array>
-#include <cstdint>
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -55,6 +54,7 @@ public:
     Jitter jitter() const { return jitter_; }  ///< Auto: what the first view's module prefers
     float time() const { return time_; }
     Layout layout() const { return layout_; }
+    float sceneRadius() const { return sceneRadius_; }  ///< half the diagonal of the scene at rest, metres
     const RenderSettings& render() const { return render_; }
     const PathSettings& path() const { return path_; }
     const ViewSettings& view(int index) const { return views_[static_cast<size_t>(index)]; }
@@ -65,9 +65,6 @@ public:
     std::vector<std::string> activeInstances() const;
     /// Gives a module the parameters that `instance` has.
     void configure(const std::string& instance, Module& module) const;
-    /// Distinct for any two documents whose materials, or lights and sky, differ by edits.
-    uint64_t materialsStamp() const { return materialsStamp_; }
-    uint64_t lightsStamp() const { return lightsStamp_; }
 
     /// Sets one value, and returns what that invalidates. Throws Error(Usage) naming the nearest id.
     /// `environment.file` reads the image (Error(BadInput) if it cannot); `camera.select` drops the user's camera edits;
@@ -82,6 +79,8 @@ public:
     /// Values that differ from the scene's own defaults, as {"id": value}; applying them to a fresh Document of the
     /// same scene gives this one.
     nlohmann::json changedValues() const;
+    /// What turns `from` into `to`, two documents of one scene, in the same form.
+    static nlohmann::json difference(const Document& from, const Document& to);
     /// Sets every value of {"id": value}, in an order in which none undoes another.
     void apply(const nlohmann::json& values, const std::string& where = "");
 
@@ -103,10 +102,10 @@ private:
     int camera_ = 0;
     Values cameraEdits_;  ///< by id without `camera.`
     float time_ = 0;
+    float sceneRadius_ = 0;
     int sceneIndex_ = -1;
     std::string sceneVariant_;
     std::map<std::string, Values> instances_;  ///< what was set, by instance
-    uint64_t materialsStamp_ = 0, lightsStamp_ = 0;
 };
 
 /// The ids' form of names: see Document. Unnamed things are called `<kind>-<number>`, counted from 1.

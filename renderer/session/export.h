@@ -1,0 +1,44 @@
+#pragma once
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "image/exr.h"
+#include "session/frame_engine.h"
+
+namespace lumi {
+
+/// Buffers that go into an EXR as layers, besides the image and root Z.
+struct BufferSelection {
+    SignalSet signals;
+    TapSet taps;  ///< of the view's module
+
+    static BufferSelection all(const std::string& instance);
+    /// `all`, or names separated by commas: signals, taps, `<module>-<tap>`. Throws Error(Usage) naming the nearest.
+    static BufferSelection parse(const std::string& text, const std::string& instance, const std::string& where);
+};
+
+/// What was written: what a replay needs besides the frames to write the same file again.
+struct OutputChoice {
+    int view = 0;             ///< whose module and picture
+    std::string buffers;      ///< as for --buffers
+    bool half = false;        ///< colours of an EXR as half
+
+    nlohmann::json json() const;
+    static OutputChoice parse(const nlohmann::json& value, const std::string& where);
+};
+
+/// R, G, B (the module's result), A, root Z (where the frame has depth), then the selected layers; colours named
+/// `<signal>.R`, taps `<module>-<tap>.Y`; attributes: the state, worldToCamera, worldToNDC.
+ExrLayers exportLayers(const FrameOutput& frame, const std::string& instance, const BufferSelection& buffers,
+                       const std::string& state);
+
+/// Writes the view as .exr (linear, with the layers of `choice`) or .png (as shown). `document` is the one that the
+/// frame was drawn from. Throws Error(Usage) for other extensions.
+void exportView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
+                const OutputChoice& choice, const std::string& state);
+
+/// Camera space to normalised device coordinates: x right, y up, both in [-1, 1] over the image.
+Mat4 ndcFromCamera(const CameraPose& camera);
+
+}  // namespace lumi

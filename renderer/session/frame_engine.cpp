@@ -1,0 +1,253 @@
+#include "session/frame_engine.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "base/error.h"
+#include "reconstruct/catalog.h"
+#include "session/changes.h"
+#include "session/view_buffers.h"
+
+namespace lumi {
+namespace {
+
+/// Scene at the document's time, seen from `previousTime`; `fits` (may be null) is taken if it is just that.
+std::shared_ptr<const PosedScene> pose(const Document& document, float previousTime, const PosedScene* earlier,
+                                       const std::shared_ptr<const PosedScene>& fits) {
+    const float time = document.time();
+    if (fits && fits->scene == document.scene() && fits->time == time && fits->previousTime == previousTime) return fits;
+    return poseScene(document.scene(), {time, time, previousTime}, earlier);
+}
+
+/// The worst that the differences between two lists of one module's parameters invalidate; nothing: none differ.
+std::optional<Redo> worstChange(const std::vector<ParameterInfo>& before, const std::vector<ParameterInfo>& now) {
+    std::optional<Redo> worst;
+    for (size_t i = 0; i < now.size() && i < before.size(); ++i)
+        if (before[i].value != now[i].value) worst = std::max(worst.value_or(now[i].redo), now[i].redo);
+    return worst;
+}
+
+bool isActive(const std::string& instance, const Document& document) {
+    const std::vector<std::string> active = document.activeInstances();
+    return std::find(active.begin(), active.end(), instance) != active.end();
+}
+
+}  // namespace
+
+bool FrameOutput::rests() const {
+    return !convergence.empty() &&
+           std::all_of(convergence.begin(), convergence.end(), [](const auto& entry) { return entry.second.done(); });
+}
+
+FrameEngine::FrameEngine(MessageLog& log, OnModuleError onError) : log_(log), onError_(onError) {}
+FrameEngine::~FrameEngine() = default;
+
+std::optional<FrameOutput> FrameEngine::advance(const FrameRequest& request, std::stop_token stop) {
+    Timer total;
+    StageTimer timer;
+    if (request.cut) before_.reset(), current_.reset();
+    const bool replaces = current_ && request.frame == current_->frame;
+    const std::optional<Completed>& previous = replaces ? before_ : current_;
+
+    Completed next{request.frame, request.document, {}, nullptr, nullptr, {}};
+    const RenderSettings& render = request.document.render();
+    next.camera = poseCamera(request.document.camera(), {render.width, render.height});
+
+    FrameOutput frame;
+    frame.changes.cut = !previous || previous->frame + 1 != request.frame ||
+                        isCut({previous->document, previous->camera}, {next.document, next.camera});
+    {
+        const auto measured = timer.measure("pose");
+        const float previousTime = frame.changes.cut ? next.document.time() : previous->document.time();
+        next.scene = pose(next.document, previousTime, previous ? previous->scene.get() : nullptr,
+                          current_ ? current_->scene : nullptr);
+    }
+    if (!frame.changes.cut)
+        frame.changes = differences({previous->document, previous->camera}, {next.document, next.camera}, *next.scene);
+
+    // Without a cut `previous` holds the frame before; a copy, since it is overwritten below.
+    const CameraPose previousCamera = frame.changes.cut ? next.camera : previous->camera;
+    prepareInstances(request, next.camera.extent, frame.changes.cut ? nullptr : &*previous);
+    if (!traceSignals(request, previousCamera, replaces, next, timer, stop)) return std::nullopt;
+    if (!runModules(request, next, previousCamera, frame, timer, stop)) return std::nullopt;
+
+    adoptFreshInstances(next.document, replaces);
+
+    frame.number = request.frame;
+    frame.time = next.document.time();
+    frame.camera = next.camera;
+    frame.scene = next.scene;
+    frame.signals = next.signals;
+    frame.rays = next.rays;
+    frame.stagesMs = timer.stages();
+    frame.frameMs = total.elapsedMs();
+    if (!replaces) before_ = std::move(current_);
+    current_ = std::move(next);
+    return frame;
+}
+
+FrameEngine::Instance& FrameEngine::running(const std::string& name) {
+    const auto fresh = fresh_.find(name);
+    return fresh == fresh_.end() ? instances_.at(name) : fresh->second;
+}
+
+void FrameEngine::prepareInstances(const FrameRequest& request, Extent2 extent, const Completed* previous) {
+    fresh_.clear();
+    for (const std::string& name : request.document.activeInstances()) {
+        const std::vector<ParameterInfo> parameters = request.document.list(name + ".");
+        const auto old = instances_.find(name);
+        bool goesOn = previous && old != instances_.end() && old->second.extent == extent;
+        if (goesOn) {
+            const Instance& instance = old->second;
+            const std::optional<Redo> change = worstChange(instance.parameters, parameters);
+            goesOn = (instance.lastFrame == request.frame ||
+                      (instance.lastFrame == previous->frame && isActive(name, previous->document))) &&
+                     (!change || (*change < Redo::History && !instance.failed));
+        }
+        if (!goesOn) {
+            Instance& instance = fresh_[name];
+            instance.module = findModule(name).make();
+            instance.extent = extent;
+            instance.parameters = parameters;
+            request.document.configure(name, *instance.module);
+            instance.module->resize(extent);
+        } else {
+            request.document.configure(name, *old->second.module);
+        }
+    }
+}
+
+void FrameEngine::adoptFreshInstances(const Document& document, bool replaces) {
+    for (auto& [name, instance] : fresh_) instances_[name] = std::move(instance);
+    fresh_.clear();
+    // What ran in the frame before, or in this one before it was replaced, stays: it may be asked for again.
+    if (replaces) return;
+    std::erase_if(instances_, [&](const auto& entry) {
+        return !isActive(entry.first, document) && !(current_ && isActive(entry.first, current_->document));
+    });
+}
+
+SignalSet FrameEngine::wantedSignals(const FrameRequest& request) {
+    SignalSet wanted = request.signals | shownSignals(request.document);
+    wanted.add(Signal::Noisy);  // what is shown if a module fails
+    for (const std::string& name : request.document.activeInstances()) wanted |= running(name).module->reads();
+    return wanted;
+}
+
+Jitter FrameEngine::jitter(const Document& document) {
+    if (document.jitter() != Jitter::Auto) return document.jitter();
+    return running(document.view(0).module).module->preferredJitter();
+}
+
+FrameSampling FrameEngine::sampling(const FrameRequest& request, const Completed& next,
+                                    const CameraPose& previousCamera) {
+    const RenderSettings& render = next.document.render();
+    FrameSampling sampling;
+    sampling.extent = next.camera.extent;
+    sampling.camera = next.camera;
+    sampling.previousCamera = previousCamera;
+    sampling.frame = static_cast<uint32_t>(request.frame);
+    sampling.samplesPerPixel = render.samplesPerPixel;
+    sampling.firstSample = static_cast<uint64_t>(request.frame) * static_cast<uint64_t>(render.samplesPerPixel);
+    sampling.seed = static_cast<uint32_t>(render.seed);
+    sampling.jitter = jitter(next.document);
+    sampling.path = next.document.path();
+    sampling.wanted = wantedSignals(request);
+    return sampling;
+}
+
+std::shared_ptr<Signals> FrameEngine::freeSignals() {
+    for (const std::shared_ptr<Signals>& signals : pool_)
+        if (signals.use_count() == 1) return signals;
+    pool_.push_back(std::make_shared<Signals>());
+    return pool_.back();
+}
+
+bool FrameEngine::traceSignals(const FrameRequest& request, const CameraPose& previousCamera, bool replaces,
+                               Completed& next, StageTimer& timer, std::stop_token stop) {
+    const FrameSampling asked = sampling(request, next, previousCamera);
+    if (replaces && current_->scene == next.scene && current_->camera == next.camera &&
+        current_->signals->available().contains(asked.wanted)) {
+        const FrameState before{current_->document, current_->camera}, now{next.document, next.camera};
+        const Jitter oldJitter = current_->document.jitter();
+        const bool sameJitter = oldJitter == next.document.jitter() &&
+                                (oldJitter != Jitter::Auto ||
+                                 current_->document.view(0).module == next.document.view(0).module);
+        if (!differences(before, now, *next.scene).sampling && sameJitter) {
+            next.signals = current_->signals;
+            next.rays = current_->rays;
+            return true;
+        }
+    }
+    if (bound_ != next.scene) {
+        const auto measured = timer.measure("build");
+        bound_ = nullptr;  // if building fails, the next frame builds again
+        tracer_.bind(next.scene);
+        bound_ = next.scene;
+    }
+    const auto measured = timer.measure("trace");
+    const std::shared_ptr<Signals> signals = freeSignals();
+    tracer_.resetCounts();
+    if (!tracer_.sample(asked, *signals, stop)) return false;
+    next.signals = signals;
+    next.rays = tracer_.counts();
+    return true;
+}
+
+bool FrameEngine::runModules(const FrameRequest& request, const Completed& next, const CameraPose& previousCamera,
+                             FrameOutput& frame, StageTimer& timer, std::stop_token stop) {
+    frame.historyDropped = true;
+    const std::map<std::string, TapSet> shown = shownTaps(next.document);
+    for (const std::string& name : next.document.activeInstances()) {
+        Instance& current = running(name);
+        TapSet wanted;
+        if (const auto taps = request.taps.find(name); taps != request.taps.end()) wanted = taps->second;
+        if (const auto taps = shown.find(name); taps != shown.end()) wanted.insert(taps->second.begin(), taps->second.end());
+        Changes changes = frame.changes;
+        changes.cut = changes.cut || current.lastFrame < 0 || current.firstFrame == request.frame;
+        frame.historyDropped = frame.historyDropped && !current.module->keepsHistory(changes);
+
+        timer.setPrefix(name + ".");
+        const FrameContext context{request.frame, *next.signals, *next.scene, next.camera, previousCamera,
+                                   changes,       wanted,        tracer_,     timer,       stop};
+        auto out = std::make_shared<Image>();
+        if (!runModule(name, context, *out, frame)) return false;
+        if (current.firstFrame < 0) current.firstFrame = request.frame;
+        current.lastFrame = request.frame;
+        current.parameters = next.document.list(name + ".");
+        frame.results[name] = out;
+        frame.convergence[name] = current.failed ? Convergence{} : current.module->convergence();
+        if (current.failed) continue;
+        for (const std::string& tap : wanted)
+            if (const Image& image = current.module->tap(tap); !image.empty())
+                frame.taps[name + "-" + tap] = std::make_shared<Image>(image);
+    }
+    return true;
+}
+
+bool FrameEngine::runModule(const std::string& name, const FrameContext& context, Image& out, FrameOutput& frame) {
+    Instance& current = running(name);
+    if (!current.failed) {
+        try {
+            return current.module->run(context, out) == RunResult::Completed;
+        } catch (const Error& error) {
+            if (onError_ == OnModuleError::Throw || error.kind() == ErrorKind::Interrupted) throw;
+            log_.error(name + ": " + error.what() + "; showing the raw frame instead");
+        } catch (const std::exception& error) {
+            if (onError_ == OnModuleError::Throw) throw;
+            log_.error(name + ": failed (" + error.what() + "); showing the raw frame instead");
+        }
+        current.failed = true;
+    }
+    out = context.signals[Signal::Noisy];
+    return true;
+}
+
+size_t FrameEngine::byteCount() const {
+    size_t bytes = tracer_.byteCount();
+    for (const auto& signals : pool_) bytes += signals->bytes();
+    for (const auto& [name, current] : instances_) bytes += current.module->byteCount();
+    return bytes;
+}
+
+}  // namespace lumi

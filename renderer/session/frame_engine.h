@@ -1,0 +1,104 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "base/messages.h"
+#include "reconstruct/module.h"
+#include "session/document.h"
+#include "trace/tracer.h"
+
+namespace lumi {
+
+/// One frame as asked for. The instances that run are those of the document's drawn views.
+struct FrameRequest {
+    const Document& document;
+    FrameNumber frame = 0;
+    bool cut = false;                    ///< nothing before this frame counts: as in a fresh engine
+    SignalSet signals;                   ///< wanted beyond what the modules read and the views show
+    std::map<std::string, TapSet> taps;  ///< wanted beyond what the views show, by instance
+};
+
+/// One completed frame. Images are shared and never change again.
+struct FrameOutput {
+    FrameNumber number = -1;
+    float time = 0;
+    Changes changes;              ///< against the frame before
+    bool historyDropped = false;  ///< no module kept anything from before this frame
+    CameraPose camera;
+    std::shared_ptr<const PosedScene> scene;
+    std::shared_ptr<const Signals> signals;
+    std::map<std::string, std::shared_ptr<const Image>> results;  ///< by instance
+    std::map<std::string, std::shared_ptr<const Image>> taps;     ///< "<instance>-<tap>"
+    std::map<std::string, Convergence> convergence;               ///< by instance
+    std::vector<std::pair<std::string, double>> stagesMs;
+    double frameMs = 0;
+    TraceCounts rays;
+
+    /// Every module has converged: more frames would not change what is shown.
+    bool rests() const;
+};
+
+/// Runs frames, one after the other, on the calling thread and the pool: pose, trace what someone reads, run the
+/// modules. Both the interactive session and `render` drive it; what it makes depends only on the requests.
+class FrameEngine {
+public:
+    enum class OnModuleError { Throw, ShowRawFrame };
+    explicit FrameEngine(MessageLog& log, OnModuleError onError = OnModuleError::Throw);
+    ~FrameEngine();
+
+    /// Draws a frame, or returns nothing if it was stopped; then nothing has changed. A frame with the number of the
+    /// last completed one replaces it, seen from the same frame before; any other number but the next is a cut.
+    std::optional<FrameOutput> advance(const FrameRequest& request, std::stop_token stop = {});
+
+    /// Bytes of tracer, signals and modules.
+    size_t byteCount() const;
+
+private:
+    /// A completed frame as the next one sees it.
+    struct Completed {
+        FrameNumber frame = -1;
+        Document document;
+        CameraPose camera;
+        std::shared_ptr<const PosedScene> scene;
+        std::shared_ptr<const Signals> signals;
+        TraceCounts rays;
+    };
+    struct Instance {
+        std::unique_ptr<Module> module;
+        Extent2 extent;
+        FrameNumber firstFrame = -1, lastFrame = -1;  ///< of its history; -1 before the first run
+        std::vector<ParameterInfo> parameters;        ///< that it ran with
+        bool failed = false;                          ///< it threw; tried again when a parameter changes
+    };
+    using Instances = std::map<std::string, Instance>;
+
+    /// Instances that cannot go on from their history are made anew in fresh_; they take their place for good only when
+    /// the frame is complete.
+    /// `previous`: the frame before, null on a cut.
+    void prepareInstances(const FrameRequest& request, Extent2 extent, const Completed* previous);
+    Instance& running(const std::string& name);
+    void adoptFreshInstances(const Document& document, bool replaces);
+    SignalSet wantedSignals(const FrameRequest& request);
+    Jitter jitter(const Document& document);
+    FrameSampling sampling(const FrameRequest& request, const Completed& next, const CameraPose& previousCamera);
+    bool traceSignals(const FrameRequest& request, const CameraPose& previousCamera, bool replaces, Completed& next,
+                      StageTimer& timer, std::stop_token stop);
+    bool runModules(const FrameRequest& request, const Completed& next, const CameraPose& previousCamera, FrameOutput& frame,
+                    StageTimer& timer, std::stop_token stop);
+    bool runModule(const std::string& name, const FrameContext& context, Image& out, FrameOutput& frame);
+    std::shared_ptr<Signals> freeSignals();
+
+    MessageLog& log_;
+    OnModuleError onError_;
+    Tracer tracer_;
+    std::shared_ptr<const PosedScene> bound_;
+    Instances instances_, fresh_;
+    std::vector<std::shared_ptr<Signals>> pool_;  ///< those that nobody else holds are used again
+    std::optional<Completed> before_, current_;
+};
+
+}  // namespace lumi
