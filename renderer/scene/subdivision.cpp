@@ -1,0 +1,219 @@
+#include "scene/subdivision.h"
+
+#include <fmt/format.h>
+#include <opensubdiv/bfr/refinerSurfaceFactory.h>
+#include <opensubdiv/bfr/surface.h>
+#include <opensubdiv/bfr/surfaceFactoryCache.h>
+#include <opensubdiv/bfr/tessellation.h>
+#include <opensubdiv/far/topologyDescriptor.h>
+
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "scene/subdivision_topology.h"
+
+namespace lumi {
+namespace {
+namespace Bfr = OpenSubdiv::Bfr;
+namespace Far = OpenSubdiv::Far;
+
+using SharedCache = Bfr::SurfaceFactoryCacheThreaded<std::shared_mutex, std::shared_lock<std::shared_mutex>,
+                                                     std::unique_lock<std::shared_mutex>>;
+using Factory = Bfr::RefinerSurfaceFactory<SharedCache>;
+
+/// Where one base face's vertices, triangles and weights go.
+struct FaceSpan {
+    uint32_t firstVertex = 0, vertexCount = 0;
+    uint32_t firstTriangle = 0, triangleCount = 0;
+    std::vector<uint32_t> controls;  // cage vertices that the face's surface depends on
+};
+
+std::vector<FaceSpan> planFaces(const Factory& factory, int faceCount, int rate, const std::string& where) {
+    std::vector<FaceSpan> spans(static_cast<size_t>(faceCount));
+    uint64_t vertices = 0, triangles = 0;
+    for (int face = 0; face < faceCount; ++face) {
+        FaceSpan& span = spans[static_cast<size_t>(face)];
+        span.firstVertex = static_cast<uint32_t>(vertices);
+        span.firstTriangle = static_cast<uint32_t>(triangles);
+        if (!factory.FaceHasLimitSurface(face)) continue;
+        const Bfr::Tessellation pattern(factory.GetFaceParameterization(face), rate);
+        span.vertexCount = static_cast<uint32_t>(pattern.GetNumCoords());
+        span.triangleCount = static_cast<uint32_t>(pattern.GetNumFacets());
+        vertices += span.vertexCount;
+        triangles += span.triangleCount;
+    }
+    if (triangles > uint64_t(1) << 30)
+        throwBadInput({"tessellates into too many triangles", where, "at most 2^30", fmt::format("{}", triangles)});
+    checkMemory(fmt::format("tessellating {}", where), vertices * 300 + triangles * 20);
+    return spans;
+}
+
+/// Coordinates, triangles and texture coordinates of one face, and the weights of its vertices over the cage.
+class FaceTessellator {
+public:
+    FaceTessellator(const SubdivisionCage& cage, const Factory& factory, int rate)
+        : cage_(cage), factory_(factory), rate_(rate) {}
+
+    void run(int face, FaceSpan& span, std::vector<std::vector<float>>& rows, SubdivisionSurface& out) const {
+        Bfr::Surface<float> surface;
+        factory_.InitVertexSurface(face, &surface);
+        const Bfr::Tessellation pattern(surface.GetParameterization(), rate_);
+        std::vector<float> coordinates(2 * span.vertexCount);
+        pattern.GetCoords(coordinates.data());
+
+        std::vector<int> controls(static_cast<size_t>(surface.GetNumControlPoints()));
+        surface.GetControlPointIndices(controls.data());
+        span.controls.assign(controls.begin(), controls.end());
+        const size_t n = controls.size();
+        std::vector<float>& weights = rows[static_cast<size_t>(face)];
+        weights.resize(3 * n * span.vertexCount);
+        for (uint32_t v = 0; v < span.vertexCount; ++v) {
+            float* row = &weights[3 * n * v];
+            surface.EvaluateStencil(&coordinates[2 * v], row, row + n, row + 2 * n);
+            out.faceCoordinates[span.firstVertex + v] = {coordinates[2 * v], coordinates[2 * v + 1]};
+        }
+        writeTriangles(pattern, span, static_cast<uint32_t>(face), out);
+        if (!cage_.uvs.empty()) writeUvs(face, span, coordinates, out);
+    }
+
+private:
+    void writeTriangles(const Bfr::Tessellation& pattern, const FaceSpan& span, uint32_t face,
+                        SubdivisionSurface& out) const {
+        std::vector<int> facets(3 * static_cast<size_t>(span.triangleCount));
+        pattern.GetFacets(facets.data());
+        for (uint32_t t = 0; t < span.triangleCount; ++t) {
+            const auto corner = [&](uint32_t c) { return span.firstVertex + static_cast<uint32_t>(facets[3 * t + c]); };
+            out.mesh.triangles[span.firstTriangle + t] = {corner(0), corner(1), corner(2)};
+            out.triangleFace[span.firstTriangle + t] = face;
+            if (!cage_.faceMaterials.empty())
+                out.mesh.triangleMaterial[span.firstTriangle + t] = cage_.faceMaterials[face];
+        }
+    }
+    void writeUvs(int face, const FaceSpan& span, const std::vector<float>& coordinates,
+                  SubdivisionSurface& out) const {
+        Bfr::Surface<float> surface;
+        if (!factory_.InitFaceVaryingSurface(face, &surface)) return;
+        std::vector<float> points(2 * static_cast<size_t>(surface.GetNumPatchPoints()));
+        surface.PreparePatchPoints(&cage_.uvs[0].x, Bfr::Surface<float>::PointDescriptor(2), points.data(),
+                                   Bfr::Surface<float>::PointDescriptor(2));
+        for (uint32_t v = 0; v < span.vertexCount; ++v)
+            surface.Evaluate(&coordinates[2 * v], points.data(), Bfr::Surface<float>::PointDescriptor(2),
+                             &out.mesh.uv[0][span.firstVertex + v].x);
+    }
+    const SubdivisionCage& cage_;
+    const Factory& factory_;
+    int rate_;
+};
+
+/// Concatenates the faces' weights into one table of rows.
+void gatherRows(const std::vector<FaceSpan>& spans, const std::vector<std::vector<float>>& rows,
+                SubdivisionSurface& out) {
+    out.first.assign(1, 0);
+    for (size_t face = 0; face < spans.size(); ++face) {
+        const size_t n = spans[face].controls.size();
+        for (uint32_t v = 0; v < spans[face].vertexCount; ++v) {
+            const float* row = &rows[face][3 * n * v];
+            for (size_t k = 0; k < n; ++k) {
+                if (row[k] == 0 && row[n + k] == 0 && row[2 * n + k] == 0) continue;
+                out.cageVertex.push_back(spans[face].controls[k]);
+                out.weight.push_back(row[k]);
+                out.tangentU.push_back(row[n + k]);
+                out.tangentV.push_back(row[2 * n + k]);
+            }
+            out.first.push_back(static_cast<uint32_t>(out.weight.size()));
+        }
+    }
+}
+
+/// Finds vertices of different faces that are the same point of a cage vertex or edge. The boundary of a face's pattern
+/// begins at its first corner and runs counter-clockwise, corner by corner with the points of the edge between.
+void findShared(const Far::TopologyLevel& level, const Factory& factory, int rate, const std::vector<FaceSpan>& spans,
+                SubdivisionSurface& out) {
+    std::unordered_map<uint64_t, uint32_t> seen;
+    const auto meet = [&](uint64_t key, uint32_t vertex) {
+        const auto [place, isNew] = seen.emplace(key, vertex);
+        if (!isNew) out.shared.emplace_back(vertex, place->second);
+    };
+    for (size_t face = 0; face < spans.size(); ++face) {
+        if (spans[face].vertexCount == 0) continue;
+        const auto corners = level.GetFaceVertices(static_cast<int>(face));
+        const auto edges = level.GetFaceEdges(static_cast<int>(face));
+        const Bfr::Tessellation pattern(factory.GetFaceParameterization(static_cast<int>(face)), rate);
+        uint32_t vertex = spans[face].firstVertex;
+        for (int e = 0; e < corners.size(); ++e) {
+            meet(static_cast<uint64_t>(corners[e]), vertex++);
+            const int inner = pattern.GetNumEdgeCoords(e);
+            const bool forward = level.GetEdgeVertices(edges[e])[0] == corners[e];
+            for (int k = 0; k < inner; ++k, ++vertex) {
+                const auto place = static_cast<uint64_t>(forward ? k : inner - 1 - k);
+                meet((uint64_t(1) << 63) | (static_cast<uint64_t>(edges[e]) << 16) | place, vertex);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+SubdivisionSurface tessellate(const SubdivisionCage& cage, int rate, const std::string& where) {
+    if (rate < 1 || rate > 64)
+        throwBadInput({"the tessellation rate is out of range", where, "1 to 64", fmt::format("{}", rate)});
+    const std::unique_ptr<Far::TopologyRefiner> refiner = makeRefiner(cage, where);
+    Factory::Options options;
+    options.SetDefaultFVarID(cage.uvs.empty() ? -1 : 0);
+    const Factory factory(*refiner, options);
+    const auto faceCount = static_cast<int>(cage.faceSizes.size());
+    std::vector<FaceSpan> spans = planFaces(factory, faceCount, rate, where);
+
+    SubdivisionSurface out;
+    const size_t vertices = spans.empty() ? 0 : spans.back().firstVertex + spans.back().vertexCount;
+    const size_t triangles = spans.empty() ? 0 : spans.back().firstTriangle + spans.back().triangleCount;
+    out.mesh.name = cage.name;
+    out.mesh.material = cage.material;
+    out.mesh.triangles.resize(triangles);
+    out.triangleFace.resize(triangles);
+    out.faceCoordinates.resize(vertices);
+    if (!cage.faceMaterials.empty()) out.mesh.triangleMaterial.resize(triangles);
+    if (!cage.uvs.empty()) out.mesh.uv[0].resize(vertices);
+
+    std::vector<std::vector<float>> rows(spans.size());
+    const FaceTessellator tessellator(cage, factory, rate);
+    parallelRanges(faceCount, 32, [&](int64_t begin, int64_t end) {
+        for (int64_t face = begin; face < end; ++face)
+            if (spans[static_cast<size_t>(face)].vertexCount > 0)
+                tessellator.run(static_cast<int>(face), spans[static_cast<size_t>(face)], rows, out);
+    });
+    gatherRows(spans, rows, out);
+    findShared(refiner->GetLevel(0), factory, rate, spans, out);
+    out.evaluate(cage.positions, out.mesh.positions, out.mesh.normals);
+    return out;
+}
+
+void SubdivisionSurface::evaluate(const std::vector<Vec3>& cage, std::vector<Vec3>& positions,
+                                  std::vector<Vec3>& normals) const {
+    const size_t count = first.size() - 1;
+    positions.resize(count);
+    normals.resize(count);
+    parallelRanges(static_cast<int64_t>(count), 1024, [&](int64_t begin, int64_t end) {
+        for (auto v = static_cast<size_t>(begin); v < static_cast<size_t>(end); ++v) {
+            Vec3 p(0), du(0), dv(0);
+            for (uint32_t k = first[v]; k < first[v + 1]; ++k) {
+                const Vec3& c = cage[cageVertex[k]];
+                p += weight[k] * c;
+                du += tangentU[k] * c;
+                dv += tangentV[k] * c;
+            }
+            positions[v] = p;
+            const Vec3 normal = glm::cross(du, dv);
+            const float length = glm::length(normal);
+            normals[v] = length > 0 && std::isfinite(length) ? normal / length : Vec3(0, 1, 0);
+        }
+    });
+    for (const auto& [vertex, source] : shared) positions[vertex] = positions[source];
+}
+
+}  // namespace lumi

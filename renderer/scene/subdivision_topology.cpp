@@ -1,0 +1,111 @@
+#include "scene/subdivision_topology.h"
+
+#include <fmt/format.h>
+#include <opensubdiv/far/error.h>
+#include <opensubdiv/far/topologyDescriptor.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/error.h"
+
+namespace lumi {
+namespace {
+namespace Far = OpenSubdiv::Far;
+namespace Sdc = OpenSubdiv::Sdc;
+
+void checkIndices(const std::vector<uint32_t>& indices, size_t limit, const char* what, const std::string& where) {
+    for (const uint32_t index : indices)
+        if (index >= limit)
+            throwBadInput({fmt::format("a {} index is out of range", what), where, fmt::format("below {}", limit),
+                           fmt::format("{}", index)});
+}
+
+void checkCage(const SubdivisionCage& cage, const std::string& where) {
+    uint64_t corners = 0;
+    for (const uint32_t size : cage.faceSizes) {
+        if (size < 3) throwBadInput({"a face has too few corners", where, "3 or more", fmt::format("{}", size)});
+        corners += size;
+    }
+    if (corners != cage.faceVertices.size() || (!cage.uvs.empty() && corners != cage.faceUvs.size()))
+        throwBadInput({"face sizes and face indices do not agree", where, "", ""});
+    checkIndices(cage.faceVertices, cage.positions.size(), "vertex", where);
+    if (!cage.uvs.empty()) checkIndices(cage.faceUvs, cage.uvs.size(), "texture coordinate", where);
+    checkIndices(cage.holes, cage.faceSizes.size(), "hole", where);
+    for (const auto& crease : cage.creases) checkIndices({crease.a, crease.b}, cage.positions.size(), "crease", where);
+    for (const auto& corner : cage.corners) checkIndices({corner.vertex}, cage.positions.size(), "corner", where);
+    for (const Vec3& p : cage.positions)
+        if (!isFinite(p)) throwBadInput({"a vertex is not finite", where, "", ""});
+}
+
+Sdc::Options schemeOptions(const SubdivisionCage& cage) {
+    Sdc::Options options;
+    constexpr Sdc::Options::VtxBoundaryInterpolation kBoundary[] = {
+        Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
+        Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER};
+    constexpr Sdc::Options::FVarLinearInterpolation kFaceVarying[] = {
+        Sdc::Options::FVAR_LINEAR_NONE,          Sdc::Options::FVAR_LINEAR_CORNERS_ONLY,
+        Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,
+        Sdc::Options::FVAR_LINEAR_BOUNDARIES,    Sdc::Options::FVAR_LINEAR_ALL};
+    options.SetVtxBoundaryInterpolation(kBoundary[static_cast<size_t>(cage.boundary)]);
+    options.SetFVarLinearInterpolation(kFaceVarying[static_cast<size_t>(cage.faceVarying)]);
+    options.SetCreasingMethod(cage.chaikin ? Sdc::Options::CREASE_CHAIKIN : Sdc::Options::CREASE_UNIFORM);
+    options.SetTriangleSubdivision(cage.smoothTriangles ? Sdc::Options::TRI_SUB_SMOOTH
+                                                        : Sdc::Options::TRI_SUB_CATMARK);
+    return options;
+}
+
+/// OpenSubdiv prints what it finds odd in a topology (a crease along an edge that is not there, say); it skips it.
+void silenceOpenSubdiv() {
+    Far::SetWarningCallback([](const char*) {});
+    Far::SetErrorCallback([](Far::ErrorType, const char*) {});
+}
+
+std::vector<int> asInts(const std::vector<uint32_t>& values) { return {values.begin(), values.end()}; }
+
+}  // namespace
+
+std::unique_ptr<Far::TopologyRefiner> makeRefiner(const SubdivisionCage& cage, const std::string& where) {
+    checkCage(cage, where);
+    silenceOpenSubdiv();
+    const std::vector<int> sizes = asInts(cage.faceSizes), vertices = asInts(cage.faceVertices);
+    const std::vector<int> holes = asInts(cage.holes), uvs = asInts(cage.faceUvs);
+    std::vector<int> creaseVertices, cornerVertices;
+    std::vector<float> creaseWeights, cornerWeights;
+    for (const auto& crease : cage.creases) {
+        creaseVertices.insert(creaseVertices.end(), {static_cast<int>(crease.a), static_cast<int>(crease.b)});
+        creaseWeights.push_back(crease.sharpness);
+    }
+    for (const auto& corner : cage.corners) {
+        cornerVertices.push_back(static_cast<int>(corner.vertex));
+        cornerWeights.push_back(corner.sharpness);
+    }
+
+    Far::TopologyDescriptor::FVarChannel channel;
+    channel.numValues = static_cast<int>(cage.uvs.size());
+    channel.valueIndices = uvs.data();
+    Far::TopologyDescriptor topology;
+    topology.numVertices = static_cast<int>(cage.positions.size());
+    topology.numFaces = static_cast<int>(sizes.size());
+    topology.numVertsPerFace = sizes.data();
+    topology.vertIndicesPerFace = vertices.data();
+    topology.numCreases = static_cast<int>(creaseWeights.size());
+    topology.creaseVertexIndexPairs = creaseVertices.data();
+    topology.creaseWeights = creaseWeights.data();
+    topology.numCorners = static_cast<int>(cornerWeights.size());
+    topology.cornerVertexIndices = cornerVertices.data();
+    topology.cornerWeights = cornerWeights.data();
+    topology.numHoles = static_cast<int>(holes.size());
+    topology.holeIndices = holes.data();
+    if (!cage.uvs.empty()) {
+        topology.numFVarChannels = 1;
+        topology.fvarChannels = &channel;
+    }
+    using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
+    std::unique_ptr<Far::TopologyRefiner> refiner(
+        Factory::Create(topology, Factory::Options(Sdc::SCHEME_CATMARK, schemeOptions(cage))));
+    if (!refiner) throwBadInput({"the cage's topology cannot be subdivided", where, "", ""});
+    return refiner;
+}
+
+}  // namespace lumi
