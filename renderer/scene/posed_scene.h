@@ -36,6 +36,8 @@ public:
     std::vector<PosedLight> lights;
     Bounds3 bounds;  ///< at shutter open
     bool anythingMoves = false;  ///< against the previous frame
+    /// Object-space bounds of each instance's mesh at rest; shared from frame to frame.
+    std::shared_ptr<const std::vector<Bounds3>> meshBounds;
 
     const Mesh& mesh(uint32_t instance) const { return *scene->instances[instance].mesh; }
     const Material& material(uint32_t instance, uint32_t primitive) const {

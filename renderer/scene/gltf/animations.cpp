@@ -1,0 +1,94 @@
+#include "scene/gltf/animations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "scene/gltf/accessor.h"
+
+namespace lumi::gltf {
+namespace {
+
+std::optional<AnimatedProperty> propertyOf(const std::string& path) {
+    if (path == "translation") return AnimatedProperty::Translation;
+    if (path == "rotation") return AnimatedProperty::Rotation;
+    if (path == "scale") return AnimatedProperty::Scale;
+    if (path == "weights") return AnimatedProperty::MorphWeights;
+    return std::nullopt;
+}
+
+Interpolation interpolationOf(const std::string& name) {
+    if (name == "STEP") return Interpolation::Step;
+    if (name == "CUBICSPLINE") return Interpolation::CubicSpline;
+    return Interpolation::Linear;
+}
+
+std::vector<float> readTimes(const Document& document, int accessor, const std::string& path) {
+    std::vector<float> times = readFloats(document, accessor, 1, path);
+    for (size_t i = 0; i < times.size(); ++i)
+        if (!std::isfinite(times[i]) || (i > 0 && times[i] < times[i - 1]))
+            document.fail(path, "key " + std::to_string(i) + ": times must be finite and ascend");
+    return times;
+}
+
+/// One channel, or nothing if it moves nothing of the scene.
+std::optional<AnimationChannel> readChannel(const Document& document, const NodeTree& tree,
+                                            const tinygltf::Animation& animation, size_t index, const std::string& path) {
+    const tinygltf::AnimationChannel& source = animation.channels[index];
+    const std::string channelPath = path + "/channels/" + std::to_string(index);
+    const std::optional<AnimatedProperty> property = propertyOf(source.target_path);
+    if (!property) document.warn("the animated property \"" + source.target_path.substr(0, 60) + "\" is not supported");
+    if (!property || source.target_node < 0) return std::nullopt;
+    document.checkIndex(source.target_node, document.model().nodes.size(), channelPath + "/target/node", "nodes");
+    document.checkIndex(source.sampler, animation.samplers.size(), channelPath + "/sampler", "samplers");
+    const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<size_t>(source.sampler)];
+    const std::string samplerPath = path + "/samplers/" + std::to_string(source.sampler);
+
+    AnimationChannel channel;
+    channel.node = tree.nodeOf(static_cast<size_t>(source.target_node));
+    channel.property = *property;
+    channel.interpolation = interpolationOf(sampler.interpolation);
+    channel.times = readTimes(document, sampler.input, samplerPath + "/input");
+    if (channel.node < 0 || channel.times.empty()) return std::nullopt;
+    const size_t rows = channel.times.size() * (channel.interpolation == Interpolation::CubicSpline ? 3 : 1);
+    const int width = *property == AnimatedProperty::MorphWeights ? 1 : *property == AnimatedProperty::Rotation ? 4 : 3;
+    channel.values = readFloats(document, sampler.output, width, samplerPath + "/output");
+    channel.components = width > 1 ? width : static_cast<int>(channel.values.size() / rows);
+    if (channel.components == 0 || channel.values.size() != rows * static_cast<size_t>(channel.components))
+        document.fail(samplerPath + "/output", "its count does not fit the keys",
+                      width > 1 ? std::to_string(rows) : "a multiple of " + std::to_string(rows),
+                      std::to_string(channel.values.size() / static_cast<size_t>(width)));
+    for (const float value : channel.values)
+        if (!std::isfinite(value)) document.fail(samplerPath + "/output", "a value is not finite");
+    return channel;
+}
+
+}  // namespace
+
+void loadAnimations(const Document& document, const NodeTree& tree, Scene& scene) {
+    std::set<std::pair<int, AnimatedProperty>> moved;
+    for (size_t a = 0; a < document.model().animations.size(); ++a) {
+        const tinygltf::Animation& source = document.model().animations[a];
+        const std::string path = "/animations/" + std::to_string(a);
+        Animation animation;
+        bool conflicts = false;
+        for (size_t c = 0; c < source.channels.size(); ++c) {
+            std::optional<AnimationChannel> channel = readChannel(document, tree, source, c, path);
+            if (!channel) continue;
+            conflicts |= moved.contains({channel->node, channel->property});
+            animation.duration = std::max(animation.duration, channel->times.back());
+            if (scene.nodes[static_cast<size_t>(channel->node)].hasMatrix)
+                document.warn("an animation moves a node whose matrix is no translation, rotation and scale; it stays");
+            animation.channels.push_back(std::move(*channel));
+        }
+        if (conflicts) {
+            document.info("the animation \"" + source.name + "\" moves what an earlier one moves and is not played");
+            continue;
+        }
+        for (const AnimationChannel& channel : animation.channels) moved.insert({channel.node, channel.property});
+        if (!animation.channels.empty()) scene.animations.push_back(std::move(animation));
+    }
+}
+
+}  // namespace lumi::gltf

@@ -1,0 +1,232 @@
+#include "scene/gltf/document.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/memory.h"
+#include "scene/gltf/json_guard.h"
+
+namespace lumi::gltf {
+namespace {
+
+/// Stands for the asset's folder in the paths that tinygltf makes, so that no other place is ever looked at.
+const std::string kFolder = "@asset";
+
+constexpr uint64_t kMaxFileBytes = (uint64_t(1) << 32) - 1;  ///< GLB lengths are 32-bit
+
+/// Extensions that the loader understands, in the order of the glTF registry.
+constexpr std::array kSupportedExtensions = {"EXT_mesh_gpu_instancing",
+                                             "KHR_lights_punctual",
+                                             "KHR_materials_emissive_strength",
+                                             "KHR_materials_ior",
+                                             "KHR_materials_pbrSpecularGlossiness",
+                                             "KHR_materials_specular",
+                                             "KHR_materials_transmission",
+                                             "KHR_materials_unlit",
+                                             "KHR_materials_variants",
+                                             "KHR_materials_volume",
+                                             "KHR_mesh_quantization",
+                                             "KHR_texture_transform"};
+
+std::string firstLine(const std::string& text) { return text.substr(0, text.find_first_of("\r\n")); }
+
+bool isBinary(std::span<const uint8_t> file) { return file.size() >= 4 && std::memcmp(file.data(), "glTF", 4) == 0; }
+
+uint32_t word(std::span<const uint8_t> file, size_t offset) {
+    uint32_t value = 0;
+    std::memcpy(&value, file.data() + offset, 4);
+    return value;
+}
+
+/// The JSON chunk of a GLB. Throws Error(BadInput) if the header or the chunk is cut off.
+std::string_view jsonChunk(std::span<const uint8_t> file, const std::string& where) {
+    constexpr uint32_t kJson = 0x4E4F534A;
+    if (file.size() < 20)
+        throwBadInput({.what = "the GLB is truncated",
+                       .where = where,
+                       .expected = "a header of 20 bytes",
+                       .found = std::to_string(file.size()) + " bytes"});
+    if (word(file, 4) != 2)
+        throwBadInput({.what = "unsupported GLB version",
+                       .where = where,
+                       .expected = "2",
+                       .found = std::to_string(word(file, 4))});
+    if (word(file, 8) > file.size())
+        throwBadInput({.what = "the GLB is truncated",
+                       .where = where,
+                       .expected = std::to_string(word(file, 8)) + " bytes",
+                       .found = std::to_string(file.size())});
+    const uint64_t length = word(file, 12);
+    if (word(file, 16) != kJson || 20 + length > file.size())
+        throwBadInput({.what = "the GLB's JSON chunk is damaged", .where = where});
+    return {reinterpret_cast<const char*>(file.data()) + 20, static_cast<size_t>(length)};
+}
+
+tinygltf::FsCallbacks callbacksFor(Document& document) {
+    tinygltf::FsCallbacks callbacks{};
+    callbacks.user_data = &document;
+    callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
+    callbacks.FileExists = [](const std::string& path, void* user) {
+        return static_cast<Document*>(user)->fileExists(path);
+    };
+    callbacks.ReadWholeFile = [](std::vector<unsigned char>* out, std::string*, const std::string& path, void* user) {
+        return static_cast<Document*>(user)->readWholeFile(*out, path);
+    };
+    return callbacks;
+}
+
+bool keepEncoded(tinygltf::Image* image, const int index, std::string*, std::string*, int, int,
+                 const unsigned char* bytes, int size, void* user) {
+    const bool embedded = image->bufferView < 0 && image->uri.empty();
+    static_cast<Document*>(user)->keepImage(
+        index, embedded ? std::span(bytes, static_cast<size_t>(std::max(size, 0))) : std::span<const uint8_t>());
+    return true;
+}
+
+}  // namespace
+
+Document::Document(const std::filesystem::path& path, MessageLog& log, const LoadOptions& options)
+    : path_(path), name_(path.filename().string()), log_(log), options_(options) {
+    progress(0, "Reading " + name_);
+    const std::vector<uint8_t> file = readFile(path, kMaxFileBytes);
+    digest_ = digest64(file);
+    try {
+        parse(file);
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::Resources, {.what = "not enough memory to read the file", .where = name_});
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& e) {
+        throwBadInput({.what = "damaged glTF: " + firstLine(e.what()), .where = name_});
+    }
+    checkExtensions();
+}
+
+void Document::parse(std::span<const uint8_t> file) {
+    const bool binary = isBinary(file);
+    const std::string_view json = binary ? jsonChunk(file, name_)
+                                         : std::string_view(reinterpret_cast<const char*>(file.data()), file.size());
+    if (!binary && lowerExtension(path_) == ".glb")
+        throwBadInput({.what = "not a GLB file", .where = name_, .expected = "the magic bytes \"glTF\""});
+    uint64_t bytes = 0;
+    for (const JsonSummary::Buffer& buffer : inspectJson(json, name_).buffers) {
+        if (buffer.external) externalBufferLengths_.push_back(buffer.byteLength);
+        bytes += buffer.hasUri ? 0 : std::min<uint64_t>(buffer.byteLength, file.size());
+    }
+    checkMemory("the buffers of " + name_, bytes);
+
+    tinygltf::TinyGLTF reader;
+    reader.SetFsCallbacks(callbacksFor(*this));
+    reader.SetImageLoader(keepEncoded, this);
+    std::string error, warning;
+    const unsigned int length = static_cast<unsigned int>(binary ? file.size() : json.size());
+    const bool good =
+        binary ? reader.LoadBinaryFromMemory(&model_, &error, &warning, file.data(), length, kFolder)
+               : reader.LoadASCIIFromString(&model_, &error, &warning, json.data(), length, kFolder);
+    if (!good && !missingFile_.empty() && error.find("File not found") != error.npos)
+        throwBadInput({.what = "the buffer file \"" + missingFile_ + "\" does not exist", .where = name_});
+    if (!good) throwBadInput({.what = "damaged glTF: " + firstLine(error), .where = name_});
+
+    images_.resize(model_.images.size());
+    for (size_t i = 0; i < images_.size(); ++i) {
+        const tinygltf::Image& image = model_.images[i];
+        images_[i].bufferView = image.bufferView;
+        images_[i].name = !image.uri.empty() ? image.uri : !image.name.empty() ? image.name
+                                                                               : "image " + std::to_string(i);
+    }
+}
+
+void Document::checkExtensions() const {
+    const auto supported = [](const std::string& name) {
+        return std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), name) != kSupportedExtensions.end();
+    };
+    for (size_t i = 0; i < model_.extensionsRequired.size(); ++i)
+        if (!supported(model_.extensionsRequired[i]))
+            fail("/extensionsRequired/" + std::to_string(i),
+                 "the file requires the extension \"" + model_.extensionsRequired[i] + "\", which is not supported");
+    for (const std::string& name : model_.extensionsUsed)
+        if (!supported(name)) warn("the extension \"" + name + "\" is not supported; what it adds is left out");
+}
+
+void Document::fail(const std::string& jsonPath, const std::string& what, const std::string& expected,
+                    const std::string& found) const {
+    throwBadInput({.what = what, .where = name_ + ": " + jsonPath, .expected = expected, .found = found});
+}
+
+void Document::checkIndex(int64_t index, size_t count, const std::string& jsonPath, const char* collection) const {
+    if (index >= 0 && static_cast<uint64_t>(index) < count) return;
+    const std::string expected = count == 0 ? "none, since there are no " + std::string(collection)
+                                            : "0 to " + std::to_string(count - 1);
+    fail(jsonPath, "no such entry in /" + std::string(collection), expected, std::to_string(index));
+}
+
+std::span<const uint8_t> Document::bufferView(int index, const std::string& jsonPath) const {
+    checkIndex(index, model_.bufferViews.size(), jsonPath, "bufferViews");
+    const tinygltf::BufferView& view = model_.bufferViews[static_cast<size_t>(index)];
+    const std::string viewPath = "/bufferViews/" + std::to_string(index);
+    checkIndex(view.buffer, model_.buffers.size(), viewPath + "/buffer", "buffers");
+    const std::vector<unsigned char>& buffer = model_.buffers[static_cast<size_t>(view.buffer)].data;
+    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
+        fail(viewPath, "reaches past the end of its buffer", "at most " + std::to_string(buffer.size()) + " bytes",
+             std::to_string(view.byteOffset) + " + " + std::to_string(view.byteLength));
+    return {buffer.data() + view.byteOffset, view.byteLength};
+}
+
+void Document::progress(float fraction, const std::string& step) const {
+    pollStop();
+    if (options_.progress) options_.progress(fraction, step);
+}
+
+void Document::pollStop() const {
+    if (options_.stop.stop_requested())
+        throw Error(ErrorKind::Interrupted, {.what = "loading was stopped", .where = name_});
+}
+
+std::filesystem::path Document::resolve(const std::string& uri) const {
+    const std::filesystem::path relative = std::filesystem::path(uri).lexically_normal();
+    const bool climbs = relative.is_absolute() || (!relative.empty() && *relative.begin() == "..");
+    if (climbs || uri.find("://") != uri.npos || uri.find('\0') != uri.npos)
+        throwBadInput({.what = "the file name \"" + uri + "\" leads out of the asset's folder", .where = name_});
+    return path_.parent_path() / relative;
+}
+
+bool Document::fileExists(const std::string& tinygltfPath) {
+    if (!tinygltfPath.starts_with(kFolder + "/")) return false;
+    const std::string uri = tinygltfPath.substr(kFolder.size() + 1);
+    missingFile_ = uri.substr(0, 200);
+    if (uri.starts_with("data:")) return false;
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(resolve(uri), ignored);
+}
+
+bool Document::readWholeFile(std::vector<unsigned char>& out, const std::string& tinygltfPath) {
+    pollStop();
+    const std::filesystem::path file = resolve(tinygltfPath.substr(kFolder.size() + 1));
+    if (externalBuffersRead_ == externalBufferLengths_.size()) {
+        // All buffers are read: this is an image, which is read and decoded later, in parallel.
+        lastImageFile_ = file;
+        out.assign(1, 0);
+        return true;
+    }
+    const uint64_t wanted = externalBufferLengths_[externalBuffersRead_++];
+    std::error_code ignored;
+    checkMemory("the buffer " + file.filename().string(), std::filesystem::file_size(file, ignored));
+    out = readFile(file, kMaxFileBytes);
+    digest_ = digest64(out, digest_);
+    // A file may be longer than its buffer; tinygltf insists on the exact length.
+    if (out.size() > wanted) out.resize(static_cast<size_t>(wanted));
+    return true;
+}
+
+void Document::keepImage(int index, std::span<const uint8_t> bytes) {
+    images_.resize(std::max(images_.size(), static_cast<size_t>(index) + 1));
+    ImageSource& source = images_[static_cast<size_t>(index)];
+    source.file = std::exchange(lastImageFile_, {});
+    source.bytes.assign(bytes.begin(), bytes.end());
+}
+
+}  // namespace lumi::gltf

@@ -1,0 +1,75 @@
+#pragma once
+#include <tiny_gltf.h>
+
+#include <filesystem>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/load.h"
+
+namespace lumi::gltf {
+
+/// Where the encoded bytes of an image are.
+struct ImageSource {
+    std::filesystem::path file;   ///< an external file, or empty
+    int bufferView = -1;          ///< inside a buffer, or -1
+    std::vector<uint8_t> bytes;   ///< of a data URI
+    std::string name;             ///< for messages
+};
+
+/// A parsed glTF file. Its JSON is well-formed and its buffers are complete; indices are checked where they are used.
+class Document {
+public:
+    /// Reads and parses the file and its buffers; images stay where they are. Throws Error(BadInput) or
+    /// Error(Resources), and Error(Interrupted) once `options` are stopped.
+    Document(const std::filesystem::path& path, MessageLog& log, const LoadOptions& options);
+
+    const tinygltf::Model& model() const { return model_; }
+    const std::vector<ImageSource>& images() const { return images_; }
+    const LoadOptions& options() const { return options_; }
+    const std::filesystem::path& path() const { return path_; }
+    /// Digest of the file and of its buffers' files, without images.
+    uint64_t contentDigest() const { return digest_; }
+
+    /// Throws Error(BadInput) headed "file.gltf: jsonPath".
+    [[noreturn]] void fail(const std::string& jsonPath, const std::string& what, const std::string& expected = {},
+                           const std::string& found = {}) const;
+    /// One line in the message log, headed by the file; the same text is listed once.
+    void warn(const std::string& text) const { log_.warning(name_ + ": " + text); }
+    void info(const std::string& text) const { log_.info(name_ + ": " + text); }
+
+    /// Throws unless `index` is a valid index into a collection of `count` things called `collection`.
+    void checkIndex(int64_t index, size_t count, const std::string& jsonPath, const char* collection) const;
+    /// The bytes of a buffer view, range checked.
+    std::span<const uint8_t> bufferView(int index, const std::string& jsonPath) const;
+
+    /// Reports a step; throws Error(Interrupted) if the load was stopped.
+    void progress(float fraction, const std::string& step) const;
+    void pollStop() const;
+
+    // Called by tinygltf's file callbacks.
+    bool fileExists(const std::string& tinygltfPath);
+    bool readWholeFile(std::vector<unsigned char>& out, const std::string& tinygltfPath);
+    void keepImage(int index, std::span<const uint8_t> bytes);
+
+private:
+    void parse(std::span<const uint8_t> file);
+    void checkExtensions() const;
+    std::filesystem::path resolve(const std::string& uri) const;
+
+    std::filesystem::path path_;
+    std::string name_;  ///< file name, heads every message
+    MessageLog& log_;
+    const LoadOptions& options_;
+    tinygltf::Model model_;
+    std::vector<ImageSource> images_;
+    std::vector<uint64_t> externalBufferLengths_;
+    size_t externalBuffersRead_ = 0;
+    std::string missingFile_;  ///< the last file that was asked for and is not there
+    std::filesystem::path lastImageFile_;
+    uint64_t digest_ = 0;
+};
+
+}  // namespace lumi::gltf

@@ -1,0 +1,89 @@
+#include "scene/gltf/json_guard.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+
+namespace lumi::gltf {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Follows the parser's events; keeps only what JsonSummary asks for. Every event returns whether to go on.
+class Guard final : public nlohmann::json_sax<Json> {
+public:
+    Guard(std::string_view json, const std::string& where) : json_(json), where_(where) {}
+    JsonSummary summary;
+
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(number_integer_t) override { return true; }
+    bool number_unsigned(number_unsigned_t value) override {
+        if (inBuffer() && key_ == "byteLength") summary.buffers.back().byteLength = value;
+        return true;
+    }
+    bool number_float(number_float_t, const string_t&) override { return true; }
+    bool string(string_t& value) override {
+        if (inBuffer() && key_ == "uri") {
+            summary.buffers.back().hasUri = !value.empty();
+            summary.buffers.back().external = !value.empty() && !value.starts_with("data:");
+        }
+        return true;
+    }
+    bool binary(binary_t&) override { return true; }
+    bool start_object(std::size_t) override {
+        enter();
+        if (depth_ == 3 && section_ == "buffers") summary.buffers.emplace_back();
+        return true;
+    }
+    bool end_object() override { return leave(); }
+    bool start_array(std::size_t) override {
+        enter();
+        return true;
+    }
+    bool end_array() override { return leave(); }
+    bool key(string_t& value) override {
+        if (depth_ == 1) section_ = value;
+        key_ = value;
+        return true;
+    }
+    bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
+        const std::string_view before = json_.substr(0, std::min(position > 0 ? position - 1 : 0, json_.size()));
+        const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+        const size_t lineStart = before.rfind('\n') == before.npos ? 0 : before.rfind('\n') + 1;
+        std::string what = error.what();
+        if (const size_t text = what.find("syntax error"); text != what.npos) what = what.substr(text);
+        throwBadInput({.what = "not valid JSON: " + what,
+                       .where = where_ + ":" + std::to_string(line) + ":" +
+                                std::to_string(before.size() - lineStart + 1)});
+    }
+
+private:
+    bool inBuffer() const { return depth_ == 3 && section_ == "buffers" && !summary.buffers.empty(); }
+    void enter() {
+        if (++depth_ > kMaxJsonDepth)
+            throwBadInput({.what = "the JSON is nested too deeply",
+                           .where = where_,
+                           .expected = "at most " + std::to_string(kMaxJsonDepth) + " levels"});
+    }
+    bool leave() {
+        --depth_;
+        return true;
+    }
+
+    std::string_view json_;
+    const std::string& where_;
+    int depth_ = 0;
+    std::string section_, key_;
+};
+
+}  // namespace
+
+JsonSummary inspectJson(std::string_view json, const std::string& where) {
+    Guard guard(json, where);
+    Json::sax_parse(json.begin(), json.end(), &guard);
+    return std::move(guard.summary);
+}
+
+}  // namespace lumi::gltf

@@ -1,0 +1,26 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lumi::gltf {
+
+/// What must be known of a file's JSON before it is given to tinygltf.
+struct JsonSummary {
+    struct Buffer {
+        bool hasUri = false;      ///< false: the GLB's own binary chunk
+        bool external = false;    ///< a file, not a data URI
+        uint64_t byteLength = 0;
+    };
+    std::vector<Buffer> buffers;  ///< in document order
+};
+
+/// Deepest nesting that is accepted: tinygltf recurses, and overflows its stack on hostile files.
+inline constexpr int kMaxJsonDepth = 128;
+
+/// Reads through the JSON without building a tree and without recursion. Throws Error(BadInput): a syntax error (with
+/// line and column), or nesting deeper than kMaxJsonDepth. `where` heads messages.
+JsonSummary inspectJson(std::string_view json, const std::string& where);
+
+}  // namespace lumi::gltf

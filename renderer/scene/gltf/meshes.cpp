@@ -1,0 +1,135 @@
+#include "scene/gltf/meshes.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "scene/gltf/primitive.h"
+#include "scene/gltf/values.h"
+#include "scene/mesh_edit.h"
+
+namespace lumi::gltf {
+namespace {
+
+/// Position of `options.variant` among the file's variants, or -1 for none asked for.
+int variantIndex(const Document& document) {
+    const std::string& wanted = document.options().variant;
+    if (wanted.empty()) return -1;
+    std::vector<std::string> names;
+    if (const auto* root = extensionOf(document.model().extensions, "KHR_materials_variants"))
+        if (root->Has("variants") && root->Get("variants").IsArray())
+            for (size_t i = 0; i < root->Get("variants").ArrayLen(); ++i)
+                names.push_back(textOf(root->Get("variants").Get(static_cast<int>(i)), "name"));
+    for (size_t i = 0; i < names.size(); ++i)
+        if (names[i] == wanted) return static_cast<int>(i);
+    std::string known;
+    for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+    throwUsage({.what = "no such material variant",
+                .where = document.path().filename().string(),
+                .expected = known.empty() ? "none: the file has no variants" : known,
+                .found = wanted});
+}
+
+/// Material of a primitive under the chosen variant.
+int materialIndex(const tinygltf::Primitive& primitive, int variant) {
+    const auto* extension = extensionOf(primitive.extensions, "KHR_materials_variants");
+    if (variant < 0 || !extension || !extension->Has("mappings") || !extension->Get("mappings").IsArray())
+        return primitive.material;
+    const tinygltf::Value& mappings = extension->Get("mappings");
+    for (int m = 0; m < static_cast<int>(mappings.ArrayLen()); ++m) {
+        const tinygltf::Value& mapping = mappings.Get(m);
+        if (!mapping.IsObject() || !mapping.Has("variants") || !mapping.Get("variants").IsArray()) continue;
+        const tinygltf::Value& variants = mapping.Get("variants");
+        for (int v = 0; v < static_cast<int>(variants.ArrayLen()); ++v)
+            if (variants.Get(v).IsInt() && variants.Get(v).GetNumberAsInt() == variant)
+                return integerOf(mapping, "material", primitive.material);
+    }
+    return primitive.material;
+}
+
+class MeshReader {
+public:
+    MeshReader(const Document& document, const std::vector<Material>& materials, int variant, size_t index)
+        : document_(document), materials_(materials), variant_(variant),
+          source_(document.model().meshes[index]), path_("/meshes/" + std::to_string(index)) {
+        if (source_.name.empty()) source_.name = "mesh " + std::to_string(index);
+    }
+
+    std::shared_ptr<const Mesh> read() {
+        for (size_t p = 0; p < source_.primitives.size(); ++p) addPrimitive(p);
+        std::erase_if(parts_, [](const Mesh& part) { return part.triangles.empty(); });
+        if (parts_.empty()) return nullptr;
+        const bool anyNormals =
+            std::any_of(parts_.begin(), parts_.end(), [](const Mesh& part) { return !part.normals.empty(); });
+        for (Mesh& part : parts_) finish(part, anyNormals);
+        auto mesh = std::make_shared<Mesh>(mergeMeshes(std::move(parts_)));
+        mesh->name = source_.name;
+        checkMesh(*mesh, document_.path().filename().string() + ": " + path_);
+        return mesh;
+    }
+
+private:
+    /// Primitives over the same vertices share them.
+    void addPrimitive(size_t p) {
+        document_.pollStop();
+        const tinygltf::Primitive& primitive = source_.primitives[p];
+        const std::string path = path_ + "/primitives/" + std::to_string(p);
+        size_t part = 0;
+        while (part < sources_.size() && (sources_[part]->attributes != primitive.attributes ||
+                                          sources_[part]->targets != primitive.targets))
+            ++part;
+        if (part == sources_.size()) {
+            sources_.push_back(&primitive);
+            parts_.push_back(readVertices(document_, primitive, path));
+        }
+        if (parts_[part].positions.empty()) return;
+        const std::vector<UVec3> triangles = readTriangles(document_, primitive, parts_[part].positions.size(), path);
+        int material = materialIndex(primitive, variant_);
+        if (material < 0)
+            material = static_cast<int>(materials_.size()) - 1;
+        else
+            document_.checkIndex(material, materials_.size() - 1, path + "/material", "materials");
+        Mesh& mesh = parts_[part];
+        mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
+        mesh.triangleMaterial.resize(mesh.triangles.size(), static_cast<uint32_t>(material));
+    }
+
+    void finish(Mesh& part, bool anyNormals) const {
+        compactVertices(part);
+        const Material* mapped = nullptr;
+        for (const uint32_t m : part.triangleMaterial)
+            if (materials_[m].normalTexture) {
+                mapped = &materials_[m];
+                break;
+            }
+        const bool needsTangents = mapped && part.tangents.empty();
+        // glTF: without normals, faces are flat.
+        if (part.normals.empty() && (anyNormals || needsTangents)) makeFlat(part);
+        if (needsTangents && !part.uv[mapped->normalTexture.uvSet].empty())
+            computeTangents(part, mapped->normalTexture.uvSet);
+    }
+
+    const Document& document_;
+    const std::vector<Material>& materials_;
+    int variant_;
+    tinygltf::Mesh source_;
+    std::string path_;
+    std::vector<const tinygltf::Primitive*> sources_;  ///< whose vertices a part holds
+    std::vector<Mesh> parts_;
+};
+
+}  // namespace
+
+std::vector<std::shared_ptr<const Mesh>> loadMeshes(const Document& document, const std::vector<bool>& used,
+                                                    const std::vector<Material>& materials) {
+    const int variant = variantIndex(document);
+    std::vector<std::shared_ptr<const Mesh>> meshes(document.model().meshes.size());
+    parallelFor(static_cast<int64_t>(meshes.size()), [&](int64_t i) {
+        const size_t index = static_cast<size_t>(i);
+        if (used[index]) meshes[index] = MeshReader(document, materials, variant, index).read();
+    });
+    return meshes;
+}
+
+}  // namespace lumi::gltf

@@ -1,0 +1,16 @@
+#pragma once
+#include <memory>
+
+#include "scene/gltf/document.h"
+#include "scene/material.h"
+#include "scene/mesh.h"
+
+namespace lumi::gltf {
+
+/// The meshes of the file whose `used` flag is set (others stay null), in parallel: one Mesh for each glTF mesh, its
+/// primitives merged, a material for each triangle. Meshes without any triangle stay null too. `materials` are those
+/// of loadMaterials(): the last is glTF's default. Tangents are computed where a normal map needs them.
+std::vector<std::shared_ptr<const Mesh>> loadMeshes(const Document& document, const std::vector<bool>& used,
+                                                    const std::vector<Material>& materials);
+
+}  // namespace lumi::gltf

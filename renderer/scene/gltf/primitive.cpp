@@ -1,0 +1,185 @@
+#include "scene/gltf/primitive.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/transform.h"
+#include "scene/gltf/accessor.h"
+
+namespace lumi::gltf {
+namespace {
+
+/// The accessor of an attribute, or -1.
+int find(const std::map<std::string, int>& attributes, const std::string& name) {
+    const auto found = attributes.find(name);
+    return found == attributes.end() ? -1 : found->second;
+}
+
+/// Attributes of one primitive; knows how many vertices there must be.
+class VertexReader {
+public:
+    VertexReader(const Document& document, const std::string& path, size_t vertices)
+        : document_(document), path_(path), vertices_(vertices) {}
+
+    /// Empty if the attribute is absent.
+    template <class T>
+    std::vector<T> read(const std::map<std::string, int>& attributes, const std::string& name) const {
+        const int accessor = find(attributes, name);
+        if (accessor < 0) return {};
+        std::vector<T> values = readVectors<T>(document_, accessor, path_ + "/" + name);
+        expectLength(values.size(), name);
+        return values;
+    }
+
+    std::vector<Vec4> readColours(const std::map<std::string, int>& attributes) const {
+        const int accessor = find(attributes, "COLOR_0");
+        if (accessor < 0) return {};
+        if (componentCount(document_, accessor, path_ + "/COLOR_0") == 4) return read<Vec4>(attributes, "COLOR_0");
+        const std::vector<Vec3> rgb = read<Vec3>(attributes, "COLOR_0");
+        std::vector<Vec4> colours;
+        colours.reserve(rgb.size());
+        for (const Vec3& c : rgb) colours.emplace_back(c, 1.0f);
+        return colours;
+    }
+
+    SkinWeights readSkin(const std::map<std::string, int>& attributes) const {
+        std::vector<std::vector<uint32_t>> joints;
+        std::vector<std::vector<Vec4>> weights;
+        for (int set = 0; find(attributes, "JOINTS_" + std::to_string(set)) >= 0; ++set) {
+            const std::string joint = "JOINTS_" + std::to_string(set), weight = "WEIGHTS_" + std::to_string(set);
+            if (find(attributes, weight) < 0) document_.fail(path_ + "/" + joint, "has no " + weight + " beside it");
+            joints.push_back(readIntegers(document_, find(attributes, joint), 4, path_ + "/" + joint));
+            weights.push_back(read<Vec4>(attributes, weight));
+            expectLength(joints.back().size() / 4, joint);
+        }
+        SkinWeights skin;
+        if (!joints.empty()) compress(joints, weights, skin);
+        return skin;
+    }
+
+private:
+    void expectLength(size_t length, const std::string& name) const {
+        if (length != vertices_)
+            document_.fail(path_ + "/" + name, "has another count than POSITION", std::to_string(vertices_),
+                           std::to_string(length));
+    }
+
+    /// Rows without zero weights, normalised; a vertex without any weight follows joint 0.
+    void compress(const std::vector<std::vector<uint32_t>>& joints, const std::vector<std::vector<Vec4>>& weights,
+                  SkinWeights& skin) const {
+        skin.first.reserve(vertices_ + 1);
+        skin.first.push_back(0);
+        for (size_t v = 0; v < vertices_; ++v) {
+            const size_t begin = skin.weight.size();
+            float sum = 0;
+            for (size_t set = 0; set < joints.size(); ++set)
+                for (int c = 0; c < 4; ++c) {
+                    const float weight = weights[set][v][c];
+                    if (!(weight > 0) || !std::isfinite(weight)) continue;
+                    skin.joint.push_back(joints[set][4 * v + static_cast<size_t>(c)]);
+                    skin.weight.push_back(weight);
+                    sum += weight;
+                }
+            if (skin.weight.size() == begin) {
+                skin.joint.push_back(0);
+                skin.weight.push_back(1);
+                sum = 1;
+            }
+            for (size_t k = begin; k < skin.weight.size(); ++k) skin.weight[k] /= sum;
+            skin.first.push_back(static_cast<uint32_t>(skin.weight.size()));
+        }
+    }
+
+    const Document& document_;
+    const std::string& path_;
+    size_t vertices_;
+};
+
+Vec3 unitOr(const Vec3& v, const Vec3& otherwise) {
+    const float length = glm::length(v);
+    return length > 0 && std::isfinite(length) ? v / length : otherwise;
+}
+
+/// Replaces what is not finite in attributes that only decorate.
+void makeHarmless(Mesh& mesh) {
+    for (Vec3& n : mesh.normals) n = unitOr(n, Vec3(0, 1, 0));
+    for (size_t i = 0; i < mesh.tangents.size(); ++i) {
+        const Vec3 normal = mesh.normals.empty() ? Vec3(0, 1, 0) : mesh.normals[i];
+        const Vec3 spare = Frame(normal).x;
+        mesh.tangents[i] = Vec4(unitOr(Vec3(mesh.tangents[i]), spare), mesh.tangents[i].w < 0 ? -1.0f : 1.0f);
+    }
+    for (Vec4& c : mesh.colours)
+        if (!isFinite(Vec3(c)) || !std::isfinite(c.w)) c = Vec4(1);
+    for (Vec4& c : mesh.colours) c = glm::max(c, Vec4(0));
+    for (MorphTarget& target : mesh.morphTargets)
+        for (std::vector<Vec3>* deltas : {&target.positions, &target.normals, &target.tangents})
+            for (Vec3& delta : *deltas)
+                if (!isFinite(delta)) delta = Vec3(0);
+}
+
+}  // namespace
+
+Mesh readVertices(const Document& document, const tinygltf::Primitive& primitive, const std::string& path) {
+    const std::map<std::string, int>& attributes = primitive.attributes;
+    const std::string where = path + "/attributes";
+    if (find(attributes, "POSITION") < 0) {
+        document.warn(path + " has no positions and is left out");
+        return {};
+    }
+    const VertexReader reader(document, where, elementCount(document, find(attributes, "POSITION"), where + "/POSITION"));
+    Mesh mesh;
+    mesh.positions = reader.read<Vec3>(attributes, "POSITION");
+    mesh.normals = reader.read<Vec3>(attributes, "NORMAL");
+    mesh.tangents = reader.read<Vec4>(attributes, "TANGENT");
+    mesh.uv[0] = reader.read<Vec2>(attributes, "TEXCOORD_0");
+    mesh.uv[1] = reader.read<Vec2>(attributes, "TEXCOORD_1");
+    mesh.colours = reader.readColours(attributes);
+    mesh.skin = reader.readSkin(attributes);
+    for (const std::map<std::string, int>& target : primitive.targets)
+        mesh.morphTargets.push_back({reader.read<Vec3>(target, "POSITION"), reader.read<Vec3>(target, "NORMAL"),
+                                     reader.read<Vec3>(target, "TANGENT")});
+    for (size_t i = 0; i < mesh.positions.size(); ++i)
+        if (!isFinite(mesh.positions[i]))
+            document.fail(where + "/POSITION", "the position of vertex " + std::to_string(i) + " is not finite");
+    makeHarmless(mesh);
+    return mesh;
+}
+
+std::vector<UVec3> readTriangles(const Document& document, const tinygltf::Primitive& primitive, size_t vertexCount,
+                                 const std::string& path) {
+    const int mode = primitive.mode;
+    if (mode >= 0 && mode < TINYGLTF_MODE_TRIANGLES) {
+        document.warn("points and lines are not drawn");
+        return {};
+    }
+    if (mode < 0 || mode > TINYGLTF_MODE_TRIANGLE_FAN)
+        document.fail(path + "/mode", "no such primitive mode", "0 to 6", std::to_string(mode));
+
+    std::vector<uint32_t> indices;
+    if (primitive.indices >= 0) {
+        indices = readIntegers(document, primitive.indices, 1, path + "/indices");
+        for (const uint32_t index : indices)
+            if (index >= vertexCount)
+                document.fail(path + "/indices", "refers to a vertex that does not exist",
+                              "below " + std::to_string(vertexCount), std::to_string(index));
+    } else {
+        indices.resize(vertexCount);
+        for (size_t i = 0; i < vertexCount; ++i) indices[i] = static_cast<uint32_t>(i);
+    }
+    std::vector<UVec3> triangles;
+    if (mode == TINYGLTF_MODE_TRIANGLES) {
+        triangles.reserve(indices.size() / 3);
+        for (size_t i = 0; i + 2 < indices.size(); i += 3)
+            triangles.emplace_back(indices[i], indices[i + 1], indices[i + 2]);
+        if (indices.size() % 3 != 0) document.warn(path + ": the last triangle is incomplete and left out");
+    } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+        // Every second triangle of a strip runs the other way round.
+        for (size_t i = 0; i + 2 < indices.size(); ++i)
+            triangles.emplace_back(indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]);
+    } else {
+        for (size_t i = 1; i + 1 < indices.size(); ++i) triangles.emplace_back(indices[i], indices[i + 1], indices[0]);
+    }
+    return triangles;
+}
+
+}  // namespace lumi::gltf

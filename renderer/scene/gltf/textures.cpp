@@ -1,0 +1,166 @@
+#include "scene/gltf/textures.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/parallel.h"
+#include "image/decode.h"
+#include "scene/gltf/values.h"
+
+namespace lumi::gltf {
+namespace {
+
+constexpr uint64_t kMaxImageBytes = uint64_t(1) << 30;
+
+Wrap wrapMode(int mode) {
+    switch (mode) {
+        case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE: return Wrap::ClampToEdge;
+        case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT: return Wrap::MirroredRepeat;
+        default: return Wrap::Repeat;
+    }
+}
+
+/// What stands in for an image that cannot be read: a magenta and grey checker for colours, neutral values for data.
+TextureImage::Level placeholderLevel(TextureUse use) {
+    if (use == TextureUse::Data) return {{1, 1}, {255, 255, 255, 255}, {}};
+    if (use == TextureUse::Normal) return {{1, 1}, {128, 128, 255, 255}, {}};
+    return {{2, 2}, {255, 0, 255, 255, 90, 90, 90, 255, 90, 90, 90, 255, 255, 0, 255, 255}, {}};
+}
+
+}  // namespace
+
+Texture TextureLibrary::texture(int index, int texCoord, const tinygltf::ExtensionMap& extensions, TextureUse use,
+                                const std::string& jsonPath) {
+    if (index < 0) return {};
+    const tinygltf::Model& model = document_.model();
+    document_.checkIndex(index, model.textures.size(), jsonPath + "/index", "textures");
+    const tinygltf::Texture& source = model.textures[static_cast<size_t>(index)];
+    const std::string texturePath = "/textures/" + std::to_string(index);
+
+    Texture texture;
+    if (source.sampler >= 0) {
+        document_.checkIndex(source.sampler, model.samplers.size(), texturePath + "/sampler", "samplers");
+        const tinygltf::Sampler& sampler = model.samplers[static_cast<size_t>(source.sampler)];
+        texture.wrapU = wrapMode(sampler.wrapS);
+        texture.wrapV = wrapMode(sampler.wrapT);
+        if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) texture.filter = TextureFilter::Nearest;
+    }
+    texture.uvSet = texCoord;
+    if (const auto found = extensions.find("KHR_texture_transform"); found != extensions.end()) {
+        const tinygltf::Value& transform = found->second;
+        texture.offset = vec2Of(transform, "offset", Vec2(0));
+        texture.scale = vec2Of(transform, "scale", Vec2(1));
+        texture.rotation = numberOf(transform, "rotation", 0);
+        texture.uvSet = static_cast<int>(numberOf(transform, "texCoord", static_cast<float>(texCoord)));
+    }
+    if (texture.uvSet < 0 || texture.uvSet > 1) {
+        document_.warn("TEXCOORD_" + std::to_string(texture.uvSet) + " is not supported; TEXCOORD_0 is used instead");
+        texture.uvSet = 0;
+    }
+    if (source.source < 0) {
+        document_.warn(texturePath + " has no image in a supported format; a placeholder is shown");
+        texture.image = placeholder(use);
+        return texture;
+    }
+    document_.checkIndex(source.source, document_.images().size(), texturePath + "/source", "images");
+    std::shared_ptr<TextureImage>& image = entries_[source.source].images[static_cast<int>(use)];
+    if (!image) {
+        image = std::make_shared<TextureImage>();
+        image->name = document_.images()[static_cast<size_t>(source.source)].name;
+        image->srgb = use == TextureUse::Colour;
+    }
+    texture.image = image;
+    return texture;
+}
+
+Texture TextureLibrary::roughnessFromGloss(const Texture& specularGloss, float glossFactor) {
+    auto image = std::make_shared<TextureImage>();
+    image->name = specularGloss.image->name + " (roughness)";
+    glosses_.push_back({specularGloss.image, image, glossFactor});
+    Texture texture = specularGloss;
+    texture.image = image;
+    return texture;
+}
+
+std::shared_ptr<TextureImage> TextureLibrary::placeholder(TextureUse use) const {
+    auto image = std::make_shared<TextureImage>();
+    image->name = "placeholder";
+    image->srgb = use == TextureUse::Colour;
+    image->levels.push_back(placeholderLevel(use));
+    buildMips(*image);
+    return image;
+}
+
+void TextureLibrary::fill(Entry& entry, TextureImage::Level level) const {
+    int users = static_cast<int>(std::count_if(std::begin(entry.images), std::end(entry.images),
+                                               [](const auto& image) { return image != nullptr; }));
+    for (const auto& image : entry.images) {
+        if (!image) continue;
+        if (--users > 0)
+            image->levels.push_back(level);
+        else
+            image->levels.push_back(std::move(level));
+        buildMips(*image);
+    }
+}
+
+void TextureLibrary::loadImage(int index, Entry& entry) const {
+    const ImageSource& source = document_.images()[static_cast<size_t>(index)];
+    const std::string jsonPath = "/images/" + std::to_string(index);
+    std::vector<uint8_t> file;
+    std::span<const uint8_t> bytes = source.bytes;
+    if (source.bufferView >= 0) bytes = document_.bufferView(source.bufferView, jsonPath + "/bufferView");
+    try {
+        if (!source.file.empty()) {
+            file = readFile(source.file, kMaxImageBytes);
+            bytes = file;
+        }
+        if (bytes.empty()) throwBadInput({.what = "the image \"" + source.name.substr(0, 200) + "\" does not exist"});
+        entry.digest = digest64(bytes);
+        Image8 decoded = decodeImage8(bytes, source.name);
+        fill(entry, {decoded.extent, std::move(decoded.rgba), {}});
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::BadInput) throw;
+        document_.warn(jsonPath + ": " + error.what() + "; a placeholder is shown");
+        for (int use = 0; use < 3; ++use)
+            if (entry.images[use]) {
+                entry.images[use]->levels.assign(1, placeholderLevel(static_cast<TextureUse>(use)));
+                buildMips(*entry.images[use]);
+            }
+    }
+}
+
+void TextureLibrary::load(const std::function<void(float)>& step) {
+    std::vector<std::pair<const int, Entry>*> queue;
+    for (auto& entry : entries_) queue.push_back(&entry);
+    std::atomic<int> done = 0;
+    parallelFor(static_cast<int64_t>(queue.size()), [&](int64_t i) {
+        document_.pollStop();
+        auto& [index, entry] = *queue[static_cast<size_t>(i)];
+        loadImage(index, entry);
+        step(static_cast<float>(++done) / static_cast<float>(queue.size()));
+    });
+    for (const Gloss& gloss : glosses_) {
+        TextureImage::Level level = gloss.from->levels.front();
+        for (size_t i = 0; i < level.bytes.size(); i += 4) {
+            const float roughness = 255 - gloss.factor * static_cast<float>(level.bytes[i + 3]);
+            level.bytes[i + 1] = static_cast<uint8_t>(std::clamp(roughness + 0.5f, 0.0f, 255.0f));
+            level.bytes[i + 2] = 255;
+        }
+        gloss.to->levels.push_back(std::move(level));
+        buildMips(*gloss.to);
+    }
+}
+
+uint64_t TextureLibrary::digest() const {
+    uint64_t digest = 0;
+    for (const auto& [index, entry] : entries_) {
+        const uint64_t part[2] = {static_cast<uint64_t>(index), entry.digest};
+        digest = digest64({reinterpret_cast<const uint8_t*>(part), sizeof(part)}, digest);
+    }
+    return digest;
+}
+
+}  // namespace lumi::gltf

@@ -1,0 +1,52 @@
+#include "scene/material.h"
+
+#include "scene/open_range.h"
+
+namespace lumi {
+
+void Material::describe(ParameterVisitor& v) {
+    v.colour("base-color", baseColor,
+             {.label = "Base colour", .max = 1, .help = "Diffuse albedo of dielectrics, reflectance of metals at normal incidence."});
+    v.number("metallic", metallic,
+             {.label = "Metallic", .help = "0 is a dielectric, 1 a metal.", .redo = Redo::Samples});
+    v.number("roughness", roughness,
+             {.label = "Roughness", .help = "Perceptual roughness; its square is GGX's alpha.", .redo = Redo::Samples});
+    v.number("normal-scale", normalScale,
+             {.label = "Normal map", .min = 0, .max = 4, .help = "Strength of the normal map.", .redo = Redo::Samples});
+    v.colour("emission", emission, {.label = "Emission", .max = 1e6, .help = "Emitted radiance, W/(m^2 sr)."});
+    v.choice("alpha-mode", alphaMode,
+             {.label = "Alpha mode",
+              .options = {"opaque", "mask", "blend"},
+              .help = "How alpha is used: not at all, as a cut at alpha-cutoff, or as coverage.",
+              .redo = Redo::Build});
+    v.when(hasAlpha(), [&] {
+        v.number("alpha", alpha, {.label = "Alpha", .help = "Coverage of the surface.", .redo = Redo::Samples});
+    });
+    v.when(alphaMode == AlphaMode::Mask, [&] {
+        v.number("alpha-cutoff", alphaCutoff,
+                 {.label = "Alpha cutoff", .help = "The surface exists where alpha is at least this.", .redo = Redo::Samples});
+    });
+    v.number("ior", ior,
+             {.label = "Index of refraction", .min = 1, .max = 3, .help = "Of the dielectric against air.", .redo = Redo::Samples});
+    v.number("specular", specular,
+             {.label = "Specular", .help = "Weight of the dielectric reflection (KHR_materials_specular).", .redo = Redo::Samples});
+    v.colour("specular-color", specularColor,
+             {.label = "Specular colour", .max = 25, .help = "Tints the dielectric reflection at normal incidence."});
+    v.number("transmission", transmission,
+             {.label = "Transmission", .help = "Share of the diffuse base that transmits instead.", .redo = Redo::Samples});
+    v.when(transmission > 0, [&] {
+        v.number("thickness", thickness,
+                 {.label = "Thickness", .max = 1000, .unit = "m",
+                  .help = "0 is a thin wall that does not refract, above 0 the boundary of a solid.", .redo = Redo::Samples});
+        v.colour("attenuation-color", attenuationColor,
+                 {.label = "Attenuation colour", .help = "What white becomes after the attenuation distance."});
+        describeUpTo(v, "attenuation-distance", attenuationDistance,
+                     {.label = "Attenuation distance", .min = 1e-4, .max = 1e6, .scale = Scale::Log, .unit = "m",
+                      .help = "Path length in the medium that gives the attenuation colour; the largest absorbs nothing.",
+                      .redo = Redo::Samples});
+    });
+    v.toggle("double-sided", doubleSided,
+             {.label = "Double-sided", .help = "Both faces emit; shading is two-sided in any case.", .redo = Redo::Samples});
+}
+
+}  // namespace lumi

@@ -1,0 +1,88 @@
+#include "scene/node_pose.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lumi {
+namespace {
+
+/// What animation makes of a node's own transform. An animated matrix node is taken apart no further: glTF forbids it.
+Mat4 localMatrix(const Node& node, const Transform& local) { return node.hasMatrix ? node.matrix : local.matrix(); }
+
+void apply(const AnimationChannel& channel, float time, Transform& local, std::vector<float>* morphWeights) {
+    float v[4];
+    switch (channel.property) {
+        case AnimatedProperty::Translation:
+            channel.evaluate(time, v);
+            local.translation = {v[0], v[1], v[2]};
+            break;
+        case AnimatedProperty::Rotation:
+            channel.evaluate(time, v);
+            local.rotation = {v[3], v[0], v[1], v[2]};
+            break;
+        case AnimatedProperty::Scale:
+            channel.evaluate(time, v);
+            local.scale = {v[0], v[1], v[2]};
+            break;
+        case AnimatedProperty::MorphWeights:
+            if (!morphWeights) break;
+            morphWeights->resize(static_cast<size_t>(channel.components));
+            channel.evaluate(time, morphWeights->data());
+            break;
+    }
+}
+
+}  // namespace
+
+float localTime(const Animation& animation, float time) {
+    if (!animation.loop || !(animation.duration > 0) || (time >= 0 && time <= animation.duration)) return time;
+    return time - std::floor(time / animation.duration) * animation.duration;
+}
+
+NodePose poseNodes(const Scene& scene, std::optional<float> time) {
+    const size_t count = scene.nodes.size();
+    std::vector<Transform> locals(count);
+    NodePose pose;
+    pose.worldFromNode.resize(count);
+    pose.morphWeights.resize(count);
+    for (size_t i = 0; i < count; ++i) {
+        locals[i] = scene.nodes[i].local;
+        pose.morphWeights[i] = scene.nodes[i].morphWeights;
+    }
+    if (time)
+        for (const Animation& animation : scene.animations) {
+            const float local = localTime(animation, *time);
+            for (const AnimationChannel& channel : animation.channels) {
+                const size_t node = static_cast<size_t>(channel.node);
+                apply(channel, local, locals[node], &pose.morphWeights[node]);
+            }
+        }
+    for (size_t i = 0; i < count; ++i) {
+        const Node& node = scene.nodes[i];
+        const Mat4 local = localMatrix(node, locals[i]);
+        pose.worldFromNode[i] = node.parent < 0 ? local : pose.worldFromNode[static_cast<size_t>(node.parent)] * local;
+    }
+    return pose;
+}
+
+Mat4 worldFromNodeAt(const Scene& scene, int node, std::optional<float> time) {
+    Mat4 world(1);
+    for (int i = node; i >= 0; i = scene.nodes[static_cast<size_t>(i)].parent) {
+        Transform local = scene.nodes[static_cast<size_t>(i)].local;
+        if (time)
+            for (const Animation& animation : scene.animations)
+                for (const AnimationChannel& channel : animation.channels)
+                    if (channel.node == i) apply(channel, localTime(animation, *time), local, nullptr);
+        world = localMatrix(scene.nodes[static_cast<size_t>(i)], local) * world;
+    }
+    return world;
+}
+
+std::vector<Mat4> jointMatrices(const Skin& skin, const NodePose& pose) {
+    std::vector<Mat4> matrices(skin.joints.size());
+    for (size_t j = 0; j < matrices.size(); ++j)
+        matrices[j] = pose.worldFromNode[static_cast<size_t>(skin.joints[j])] * skin.inverseBind[j];
+    return matrices;
+}
+
+}  // namespace lumi

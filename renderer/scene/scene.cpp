@@ -1,0 +1,123 @@
+#include "scene/scene.h"
+
+#include <algorithm>
+#include <set>
+
+#include "scene/bounds.h"
+#include "scene/deform.h"
+#include "scene/node_pose.h"
+
+namespace lumi {
+namespace {
+
+void addTexture(const Texture& texture, std::set<const TextureImage*>& images) {
+    if (texture) images.insert(texture.image.get());
+}
+
+/// The camera of a node: a rigid frame, whatever the node's scale, with the rest pose's distance to the target.
+void placeAtNode(Camera& camera, const Mat4& worldFromNode) {
+    const float distance = glm::length(camera.target - camera.eye);
+    const Vec3 back(worldFromNode[2]), up(worldFromNode[1]);
+    const float length = glm::length(back);
+    const Vec3 forward = length > 0 ? back * (-1 / length) : Vec3(0, 0, -1);
+    camera.eye = Vec3(worldFromNode[3]);
+    camera.target = camera.eye + forward * (distance > 0 ? distance : 1.0f);
+    camera.up = glm::length(up) > 0 ? glm::normalize(up) : Vec3(0, 1, 0);
+}
+
+/// Keys as animation channels, so that every curve in a scene is evaluated by one function.
+float keyed(const std::vector<SceneCamera::Key>& keys, Interpolation interpolation, float time,
+            float (*read)(const SceneCamera::Key&)) {
+    AnimationChannel channel;
+    channel.components = 1;
+    channel.interpolation = interpolation == Interpolation::CubicSpline ? Interpolation::CatmullRom : interpolation;
+    for (const SceneCamera::Key& key : keys) {
+        channel.times.push_back(key.time);
+        channel.values.push_back(read(key));
+    }
+    float value = 0;
+    channel.evaluate(time, &value);
+    return value;
+}
+
+void placeByKeys(Camera& camera, const SceneCamera& source, float time) {
+    using Key = SceneCamera::Key;
+    const auto at = [&](float (*read)(const Key&)) { return keyed(source.keys, source.interpolation, time, read); };
+    camera.eye = {at([](const Key& k) { return k.eye.x; }), at([](const Key& k) { return k.eye.y; }),
+                  at([](const Key& k) { return k.eye.z; })};
+    camera.target = {at([](const Key& k) { return k.target.x; }), at([](const Key& k) { return k.target.y; }),
+                     at([](const Key& k) { return k.target.z; })};
+    camera.fovYDeg = std::clamp(at([](const Key& k) { return k.fovYDeg; }), 1.0f, 170.0f);
+    camera.focus = std::max(at([](const Key& k) { return k.focus; }), 1e-3f);
+}
+
+}  // namespace
+
+bool Scene::isAnimated() const { return duration() > 0; }
+
+float Scene::duration() const {
+    float longest = 0;
+    for (const Animation& animation : animations) longest = std::max(longest, animation.duration);
+    for (const SceneCamera& camera : cameras)
+        if (camera.keys.size() > 1) longest = std::max(longest, camera.keys.back().time);
+    return longest;
+}
+
+Bounds3 Scene::restBounds() const {
+    const NodePose pose = poseNodes(*this, {});
+    Bounds3 bounds;
+    for (const Instance& instance : instances) {
+        const Mesh& mesh = *instance.mesh;
+        const bool skinned = instance.skin >= 0 && !mesh.skin.empty();
+        Mat4 worldFromObject(1);
+        std::vector<float> weights;
+        if (instance.node >= 0) {
+            if (!skinned) worldFromObject = pose.worldFromNode[static_cast<size_t>(instance.node)];
+            weights = pose.morphWeights[static_cast<size_t>(instance.node)];
+        }
+        if (mesh.morphTargets.empty() && !skinned) {
+            bounds.extend(transformedBounds(boundsOf(mesh.positions), worldFromObject));
+            continue;
+        }
+        std::vector<Mat4> joints;
+        if (skinned) joints = jointMatrices(skins[static_cast<size_t>(instance.skin)], pose);
+        bounds.extend(transformedBounds(boundsOf(deform(mesh, weights, joints).positions), worldFromObject));
+    }
+    return bounds;
+}
+
+int64_t Scene::triangleCount() const {
+    int64_t count = 0;
+    for (const Instance& instance : instances) count += static_cast<int64_t>(instance.mesh->triangles.size());
+    return count;
+}
+
+size_t Scene::byteCount() const {
+    std::set<const Mesh*> meshes;
+    std::set<const TextureImage*> images;
+    for (const Instance& instance : instances) meshes.insert(instance.mesh.get());
+    for (const Material& m : materials)
+        for (const Texture* texture :
+             {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture, &m.occlusionTexture,
+              &m.emissionTexture, &m.specularTexture, &m.specularColorTexture, &m.transmissionTexture})
+            addTexture(*texture, images);
+    size_t bytes = environment.image ? environment.image->bytes() : 0;
+    for (const Mesh* mesh : meshes) bytes += mesh->byteCount();
+    for (const TextureImage* image : images) bytes += image->byteCount();
+    for (const Animation& animation : animations)
+        for (const AnimationChannel& channel : animation.channels)
+            bytes += (channel.times.size() + channel.values.size()) * sizeof(float);
+    return bytes;
+}
+
+Camera cameraAt(const Scene& scene, int index, float time) {
+    const SceneCamera& source = scene.cameras.at(static_cast<size_t>(index));
+    Camera camera = source.camera;
+    if (source.node >= 0)
+        placeAtNode(camera, worldFromNodeAt(scene, source.node, time));
+    else if (!source.keys.empty())
+        placeByKeys(camera, source, time);
+    return camera;
+}
+
+}  // namespace lumi

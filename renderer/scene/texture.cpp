@@ -1,0 +1,218 @@
+#include "scene/texture.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "math/colour.h"
+
+namespace lumi {
+namespace {
+
+/// The two texels that a bilinear lookup blends along one axis, and the weight of the second.
+struct Tap {
+    int first = 0, second = 0;
+    float weight = 0;
+};
+
+/// `coordinate` brought into [0, 1] as the wrap mode says.
+float wrapUnit(float coordinate, Wrap wrap) {
+    switch (wrap) {
+        case Wrap::Repeat: return coordinate - std::floor(coordinate);
+        case Wrap::MirroredRepeat: {
+            const float t = coordinate - 2 * std::floor(0.5f * coordinate);
+            return t > 1 ? 2 - t : t;
+        }
+        default: return std::clamp(coordinate, 0.0f, 1.0f);
+    }
+}
+
+int nearestTexel(float coordinate, int count, Wrap wrap) {
+    return std::min(static_cast<int>(wrapUnit(coordinate, wrap) * static_cast<float>(count)), count - 1);
+}
+
+Tap linearTap(float coordinate, int count, Wrap wrap) {
+    const float x = wrapUnit(coordinate, wrap) * static_cast<float>(count) - 0.5f;
+    const float floored = std::floor(x);
+    Tap tap{static_cast<int>(floored), static_cast<int>(floored) + 1, x - floored};
+    if (wrap == Wrap::Repeat) {
+        if (tap.first < 0) tap.first = count - 1;
+        if (tap.second >= count) tap.second = 0;
+    } else {
+        tap.first = std::max(tap.first, 0);
+        tap.second = std::min(tap.second, count - 1);
+    }
+    return tap;
+}
+
+Vec4 texel(const TextureImage& image, const TextureImage::Level& level, int x, int y) {
+    const size_t offset = 4 * (static_cast<size_t>(y) * static_cast<size_t>(level.extent.width) +
+                               static_cast<size_t>(x));
+    if (!level.floats.empty()) {
+        const float* p = level.floats.data() + offset;
+        return {p[0], p[1], p[2], p[3]};
+    }
+    const uint8_t* p = level.bytes.data() + offset;
+    constexpr float kByte = 1.0f / 255;
+    if (image.srgb) {
+        const float* linear = linearFromSrgbTable();
+        return {linear[p[0]], linear[p[1]], linear[p[2]], static_cast<float>(p[3]) * kByte};
+    }
+    return Vec4(p[0], p[1], p[2], p[3]) * kByte;
+}
+
+Vec4 sampleLevel(const Texture& texture, const TextureImage::Level& level, Vec2 uv) {
+    const TextureImage& image = *texture.image;
+    const auto [width, height] = level.extent;
+    if (texture.filter == TextureFilter::Nearest)
+        return texel(image, level, nearestTexel(uv.x, width, texture.wrapU), nearestTexel(uv.y, height, texture.wrapV));
+    const Tap x = linearTap(uv.x, width, texture.wrapU);
+    const Tap y = linearTap(uv.y, height, texture.wrapV);
+    const Vec4 top = texel(image, level, x.first, y.first) * (1 - x.weight) +
+                     texel(image, level, x.second, y.first) * x.weight;
+    const Vec4 bottom = texel(image, level, x.first, y.second) * (1 - x.weight) +
+                        texel(image, level, x.second, y.second) * x.weight;
+    return top * (1 - y.weight) + bottom * y.weight;
+}
+
+/// Base-2 logarithm of a positive float, exact at powers of two and linear between them (at most 0.086 too small):
+/// continuous and monotonic, which is all that a choice of mip level needs.
+float coarseLog2(float x) {
+    const uint32_t bits = std::bit_cast<uint32_t>(x);
+    return static_cast<float>(static_cast<int>(bits >> 23) - 127) + static_cast<float>(bits & 0x7fffffu) * 0x1p-23f;
+}
+
+bool finite(Vec2 v) { return std::isfinite(v.x) && std::isfinite(v.y); }
+
+/// Half of an extent, rounded down, at least 1.
+Extent2 halved(Extent2 extent) { return {std::max(1, extent.width / 2), std::max(1, extent.height / 2)}; }
+
+/// Encoded byte of a linear value in [0, 2^14): fine enough that the darkest codes keep their own entries.
+struct SrgbTables {
+    std::vector<uint16_t> linearFromCode = std::vector<uint16_t>(256);
+    std::vector<uint8_t> codeFromLinear = std::vector<uint8_t>(1 << 14);
+    SrgbTables() {
+        for (int i = 0; i < 256; ++i)
+            linearFromCode[static_cast<size_t>(i)] =
+                static_cast<uint16_t>(std::lround(linearFromSrgb(static_cast<float>(i) / 255) * 65535));
+        for (int i = 0; i < (1 << 14); ++i) {
+            const float linear = (static_cast<float>(i) + 0.5f) / (1 << 14);
+            codeFromLinear[static_cast<size_t>(i)] = static_cast<uint8_t>(std::lround(srgbFromLinear(linear) * 255));
+        }
+        codeFromLinear[0] = 0;
+    }
+};
+
+const SrgbTables& srgbTables() {
+    static const SrgbTables tables;
+    return tables;
+}
+
+/// One row of the next level from two rows above it; `step` is the distance in bytes to the right neighbour.
+void halveRowSrgb(const uint8_t* top, const uint8_t* bottom, size_t step, int count, uint8_t* out) {
+    const uint16_t* linear = srgbTables().linearFromCode.data();
+    const uint8_t* code = srgbTables().codeFromLinear.data();
+    for (int x = 0; x < count; ++x, top += 8, bottom += 8, out += 4) {
+        for (int c = 0; c < 3; ++c) {
+            const uint32_t sum = uint32_t(linear[top[c]]) + linear[top[step + c]] + linear[bottom[c]] +
+                                 linear[bottom[step + c]];
+            out[c] = code[sum >> 4];
+        }
+        out[3] = static_cast<uint8_t>((uint32_t(top[3]) + top[step + 3] + bottom[3] + bottom[step + 3] + 2) >> 2);
+    }
+}
+
+void halveRowLinear(const uint8_t* top, const uint8_t* bottom, size_t step, int count, uint8_t* out) {
+    for (int x = 0; x < count; ++x, top += 8, bottom += 8, out += 4)
+        for (int c = 0; c < 4; ++c)
+            out[c] = static_cast<uint8_t>((uint32_t(top[c]) + top[step + c] + bottom[c] + bottom[step + c] + 2) >> 2);
+}
+
+void halveRowFloat(const float* top, const float* bottom, size_t step, int count, float* out) {
+    for (int x = 0; x < count; ++x, top += 8, bottom += 8, out += 4)
+        for (int c = 0; c < 4; ++c) out[c] = 0.25f * (top[c] + top[step + c] + bottom[c] + bottom[step + c]);
+}
+
+TextureImage::Level halvedLevel(const TextureImage::Level& from, bool srgb) {
+    TextureImage::Level to;
+    to.extent = halved(from.extent);
+    const size_t rowFrom = 4 * static_cast<size_t>(from.extent.width), rowTo = 4 * static_cast<size_t>(to.extent.width);
+    const size_t step = from.extent.width > 1 ? 4 : 0;
+    const bool isFloat = !from.floats.empty();
+    if (isFloat)
+        to.floats.resize(rowTo * static_cast<size_t>(to.extent.height));
+    else
+        to.bytes.resize(rowTo * static_cast<size_t>(to.extent.height));
+    for (int y = 0; y < to.extent.height; ++y) {
+        const size_t top = rowFrom * static_cast<size_t>(2 * y);
+        const size_t bottom = from.extent.height > 1 ? top + rowFrom : top;
+        const size_t out = rowTo * static_cast<size_t>(y);
+        if (isFloat)
+            halveRowFloat(&from.floats[top], &from.floats[bottom], step, to.extent.width, &to.floats[out]);
+        else if (srgb)
+            halveRowSrgb(&from.bytes[top], &from.bytes[bottom], step, to.extent.width, &to.bytes[out]);
+        else
+            halveRowLinear(&from.bytes[top], &from.bytes[bottom], step, to.extent.width, &to.bytes[out]);
+    }
+    return to;
+}
+
+}  // namespace
+
+size_t TextureImage::byteCount() const {
+    size_t bytes = 0;
+    for (const Level& level : levels) bytes += level.bytes.size() + level.floats.size() * sizeof(float);
+    return bytes;
+}
+
+Vec2 Texture::transformed(Vec2 uv) const {
+    const Vec2 scaled = uv * scale;
+    if (rotation == 0) return scaled + offset;
+    const float c = std::cos(rotation), s = std::sin(rotation);
+    return Vec2(c * scaled.x + s * scaled.y, c * scaled.y - s * scaled.x) + offset;
+}
+
+Vec4 Texture::sample(Vec2 uv, float width) const {
+    if (!image) return Vec4(1);
+    const TextureImage::Level& finest = image->levels.front();
+    uv = transformed(uv);
+    if (!finite(uv)) return texel(*image, finest, 0, 0);
+    const float texels = width * std::sqrt(std::abs(scale.x * scale.y) * static_cast<float>(finest.extent.area()));
+    if (!(texels > 1)) return sampleLevel(*this, finest, uv);
+
+    const float last = static_cast<float>(image->levels.size() - 1);
+    const float level = std::min(coarseLog2(texels), last);
+    if (filter == TextureFilter::Nearest)
+        return sampleLevel(*this, image->levels[static_cast<size_t>(level + 0.5f)], uv);
+    const size_t lower = static_cast<size_t>(level);
+    const float weight = level - static_cast<float>(lower);
+    const Vec4 fine = sampleLevel(*this, image->levels[lower], uv);
+    if (weight == 0) return fine;
+    return fine * (1 - weight) + sampleLevel(*this, image->levels[lower + 1], uv) * weight;
+}
+
+float Texture::sampleAlpha(Vec2 uv) const {
+    if (!image) return 1;
+    const TextureImage::Level& level = image->levels.front();
+    uv = transformed(uv);
+    const auto alpha = [&](int x, int y) {
+        const size_t place = 4 * (static_cast<size_t>(y) * static_cast<size_t>(level.extent.width) +
+                                  static_cast<size_t>(x)) + 3;
+        return level.floats.empty() ? static_cast<float>(level.bytes[place]) * (1.0f / 255) : level.floats[place];
+    };
+    if (!finite(uv)) return alpha(0, 0);
+    const auto [columns, rows] = level.extent;
+    if (filter == TextureFilter::Nearest)
+        return alpha(nearestTexel(uv.x, columns, wrapU), nearestTexel(uv.y, rows, wrapV));
+    const Tap x = linearTap(uv.x, columns, wrapU);
+    const Tap y = linearTap(uv.y, rows, wrapV);
+    const float top = alpha(x.first, y.first) * (1 - x.weight) + alpha(x.second, y.first) * x.weight;
+    const float bottom = alpha(x.first, y.second) * (1 - x.weight) + alpha(x.second, y.second) * x.weight;
+    return top * (1 - y.weight) + bottom * y.weight;
+}
+
+void buildMips(TextureImage& image) {
+    while (image.levels.back().extent.area() > 1) image.levels.push_back(halvedLevel(image.levels.back(), image.srgb));
+}
+
+}  // namespace lumi
