@@ -1,0 +1,62 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "base/files.h"
+#include "image/decode.h"
+#include "image/hdr.h"
+#include "image/png.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+#include "support/test_images.h"
+
+namespace lumi {
+namespace {
+using test::expectError;
+
+/// 24-bit BMP of 2x1: blue-ish (1,2,3) and (4,5,6).
+std::vector<uint8_t> smallBmp() {
+    std::vector<uint8_t> bytes = {'B', 'M', 62, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 0, 1, 0, 24, 0};
+    bytes.resize(54);
+    bytes.insert(bytes.end(), {3, 2, 1, 6, 5, 4, 0, 0});
+    return bytes;
+}
+
+TEST(Decode, KnowsFormatsByTheirContents) {
+    const Image8 bmp = decodeImage8(smallBmp(), "small.bmp");
+    EXPECT_EQ(bmp.extent, (Extent2{2, 1}));
+    EXPECT_EQ(bmp.rgba, (std::vector<uint8_t>{1, 2, 3, 255, 4, 5, 6, 255}));
+    EXPECT_EQ(encodedExtent(smallBmp(), "small.bmp"), (Extent2{2, 1}));
+}
+
+TEST(Decode, DamageIsRefusedByName) {
+    const std::vector<uint8_t> garbage(1000, 0x77);
+    expectError(ErrorKind::BadInput, [&] { decodeImage8(garbage, "image 3"); }, {"image 3"});
+    expectError(ErrorKind::BadInput, [&] { decodeImage8({}, "image 4"); }, {"image 4"});
+    const std::vector<uint8_t> png = encodePng(test::noiseImage8({30, 30}));
+    expectError(ErrorKind::BadInput, [&] { decodeImage8(std::span(png).first(png.size() / 2), "cut"); }, {"cut"});
+}
+
+TEST(Decode, JpegsOpen) {
+    const char* assets = std::getenv("LUMISCOPE_ASSETS");
+    const std::filesystem::path folder = assets ? assets : LUMISCOPE_SOURCE_DIR "/../shared/assets";
+    if (!std::filesystem::exists(folder / "gltf/Sponza")) GTEST_SKIP() << "no shared assets at " << folder;
+    int opened = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "gltf/Sponza")) {
+        if (lowerExtension(entry.path()) != ".jpg" || opened == 3) continue;
+        const Image8 image = decodeImage8(readFile(entry.path()), entry.path().string());
+        EXPECT_EQ(image.rgba.size(), static_cast<size_t>(image.extent.area()) * 4);
+        ++opened;
+    }
+    EXPECT_GT(opened, 0);
+}
+
+TEST(LoadImage, UnknownExtensionsAreRefused) {
+    const test::TemporaryFolder folder;
+    writeFileAtomically(folder / "notes.txt", "hello");
+    expectError(ErrorKind::BadInput, [&] { loadImage(folder / "notes.txt"); }, {"notes.txt", ".exr"});
+}
+
+}  // namespace
+}  // namespace lumi
