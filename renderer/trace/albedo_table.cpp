@@ -11,9 +11,10 @@
 namespace lumi {
 namespace {
 
-// Rows crowd quadratically towards the smooth end: with roughness the albedos change like its square.
+// Rows crowd towards the smooth end, three to one.
 float roughnessOf(int row) {
-    return kTabledRoughness + (1 - kTabledRoughness) * sqr(static_cast<float>(row) / (kAlbedoRows - 1));
+    const float x = static_cast<float>(row) / (kAlbedoRows - 1);
+    return kTabledRoughness + (1 - kTabledRoughness) * 0.5f * (x + x * x);
 }
 
 Vec3 directionAt(float cosTheta) {
@@ -21,28 +22,36 @@ Vec3 directionAt(float cosTheta) {
     return {std::sqrt(std::max(0.0f, 1 - cosTheta * cosTheta)), 0, cosTheta};
 }
 
-/// Mean of value(h) over the facet normals that `wo` sees, by the midpoint rule over the square that
-/// Ggx::sampleVisibleNormal() maps, Heights by Azimuths. The integrands are even in the azimuth, so half a turn is
-/// enough; they fall steeply where reflected light grazes, at the far end of the heights, so heights crowd there.
-template <int Heights, int Azimuths, class Value>
-Vec2 meanOverVisibleNormals(const Ggx& ggx, const Vec3& wo, const Value& value) {
-    static const std::array<Vec2, Azimuths> azimuths = [] {
-        std::array<Vec2, Azimuths> table;
-        for (int i = 0; i < Azimuths; ++i) {
-            const float phi = kPi * (static_cast<float>(i) + 0.5f) / Azimuths;
-            table[static_cast<size_t>(i)] = {std::cos(phi), std::sin(phi)};
+/// The Fibonacci lattice of `Count` points; the next smaller Fibonacci number is `Step`. Heights crowd at the far end,
+/// where reflected light grazes and integrands fall steeply; `weight` makes up for it.
+template <int Count, int Step>
+struct Lattice {
+    struct Point {
+        float height, cosAzimuth, sinAzimuth, weight;
+    };
+    std::array<Point, Count> points;
+
+    Lattice() {
+        for (int i = 0; i < Count; ++i) {
+            const float t = 1 - (static_cast<float>(i) + 0.5f) / Count;
+            const float azimuth = 2 * kPi * static_cast<float>(i * Step % Count) / Count;
+            points[static_cast<size_t>(i)] = {1 - t * t, std::cos(azimuth), std::sin(azimuth), 2 * t / Count};
         }
-        return table;
-    }();
+    }
+};
+using CoarseLattice = Lattice<233, 144>;
+using FineLattice = Lattice<610, 377>;
+
+/// Mean of value(h) over the facet normals that `wo` sees, by a lattice in the square that
+/// Ggx::sampleVisibleNormal() maps: integrands have kinks along curves, and no two points of a lattice share a height.
+template <class Points, class Value>
+Vec2 meanOverVisibleNormals(const Ggx& ggx, const Vec3& wo, const Value& value) {
+    static const Points lattice;
     const Vec3 stretched = ggx.stretched(wo);
     Vec2 sum(0);
-    for (int i = 0; i < Heights; ++i) {
-        const float t = 1 - (static_cast<float>(i) + 0.5f) / Heights;
-        Vec2 ring(0);
-        for (const Vec2& azimuth : azimuths) ring += value(ggx.visibleNormal(stretched, 1 - t * t, azimuth.x, azimuth.y));
-        sum += 2 * t * ring;
-    }
-    return sum / float(Heights * Azimuths);
+    for (const auto& point : lattice.points)
+        sum += point.weight * value(ggx.visibleNormal(stretched, point.height, point.cosAzimuth, point.sinAzimuth));
+    return sum;
 }
 
 /// Masking of the far direction given the near one: what reflection by facet h keeps.
@@ -67,7 +76,7 @@ Vec2 bilinear(const std::array<std::array<Vec2, Columns>, kAlbedoRows>& table, R
 
 RoughnessRow::RoughnessRow(float roughness) {
     const float above = std::max(0.0f, (roughness - kTabledRoughness) / (1 - kTabledRoughness));
-    const float position = std::sqrt(above) * (kAlbedoRows - 1);
+    const float position = (std::sqrt(0.25f + 2 * above) - 0.5f) * (kAlbedoRows - 1);
     row = std::clamp(static_cast<int>(position), 0, kAlbedoRows - 2);
     fraction = std::clamp(position - static_cast<float>(row), 0.0f, 1.0f);
 }
@@ -85,7 +94,7 @@ SchlickAlbedo::SchlickAlbedo() {
             // Columns are even in the root of the cosine: grazing angles change fastest.
             const Vec3 wo = directionAt(sqr(static_cast<float>(column) / (kColumns - 1)));
             const float lambdaO = ggx.lambda(wo);
-            entries[static_cast<size_t>(column)] = meanOverVisibleNormals<24, 12>(ggx, wo, [&](const Vec3& h) {
+            entries[static_cast<size_t>(column)] = meanOverVisibleNormals<CoarseLattice>(ggx, wo, [&](const Vec3& h) {
                 const float share = reflectedShare(ggx, wo, lambdaO, h);
                 const float s = schlickWeight(glm::dot(wo, h));
                 return Vec2(share * (1 - s), share * s);
@@ -137,8 +146,8 @@ DielectricAlbedo::DielectricAlbedo(float eta) {
             };
             // The kink at the critical angle wants a finer grid.
             directional_[static_cast<size_t>(row)][static_cast<size_t>(column)] =
-                eta < 1 ? meanOverVisibleNormals<36, 16>(ggx, wo, throughFacet)
-                        : meanOverVisibleNormals<24, 12>(ggx, wo, throughFacet);
+                eta < 1 ? meanOverVisibleNormals<FineLattice>(ggx, wo, throughFacet)
+                        : meanOverVisibleNormals<CoarseLattice>(ggx, wo, throughFacet);
         }
     }
 }
@@ -148,7 +157,8 @@ DielectricAlbedo::DielectricAlbedo(float eta) {
 float DielectricAlbedo::columnOf(float cosTheta) const {
     const float c = std::clamp(cosTheta, 0.0f, 1.0f);
     if (cosCritical_ == 0) return std::sqrt(c) * (kColumns - 1);
-    if (c <= cosCritical_) return std::asin(std::sqrt(std::min(c * invCritical_, 1.0f))) * (2 * kInvPi) * criticalColumn_;
+    if (c <= cosCritical_)
+        return std::asin(std::sqrt(std::min(c * invCritical_, 1.0f))) * (2 * kInvPi) * criticalColumn_;
     const float cosT = std::sqrt(std::max(0.0f, (c * c - cosCritical_ * cosCritical_) * invBeyond_));
     return criticalColumn_ + std::min(cosT, 1.0f) * (kColumns - 1 - criticalColumn_);
 }

@@ -55,7 +55,8 @@ Bsdf::Bsdf(const BsdfInputs& inputs, const Vec3& wo) : wo_(usableDirection(wo)) 
     if (opaque > 0) setDiffuse(opaque * baseColor, maxComponent(layerF0), specular);
 
     const bool inside = solid_ && !inputs.entering;
-    if (boundary > 0) {
+    hasBoundary_ = boundary > 0;
+    if (hasBoundary_) {
         const float rounded = DielectricAlbedo::roundedIor(ior);
         eta_ = inside ? 1 / rounded : rounded;
         // Total reflection knows no tint, so the inside of a solid has none.
@@ -79,7 +80,7 @@ void Bsdf::setSpecular(bool inside) {
     const Vec2 schlick = schlickAlbedo(wo_.z);
     albedo_[kReflection] = f0_ * schlick.x + Vec3(f90_ * schlick.y);
     deltaTransmission_ = smooth_;
-    if (isBlack(boundaryTint_) && isBlack(transmissionTint_)) return;
+    if (!hasBoundary_) return;
 
     Vec2 boundary;  // reflected, transmitted
     if (smooth_) {
@@ -95,15 +96,24 @@ void Bsdf::setSpecular(bool inside) {
 }
 
 void Bsdf::chooseProbabilities() {
-    float share[kSlots], sum = 0;
-    for (int slot = 0; slot < kSlots; ++slot) sum += share[slot] = luminance(albedo_[slot]);
+    const float diffuse = luminance(albedo_[kDiffuse]), reflected = luminance(albedo_[kReflection]);
+    const float transmitted = luminance(albedo_[kTransmission]), specular = reflected + transmitted;
+    const float sum = diffuse + specular;
     if (!(sum > 0)) return;
-    float total = 0;
-    for (int slot = 0; slot < kSlots; ++slot) {
-        if (!isBlack(albedo_[slot])) share[slot] = std::max(share[slot], kMinLobeShare * sum);
-        total += share[slot];
-    }
-    for (int slot = 0; slot < kSlots; ++slot) probability_[slot] = share[slot] / total;
+    const float d = diffuse > 0 ? std::max(diffuse, kMinLobeShare * sum) : 0;
+    const float s = specular > 0 ? std::max(specular, kMinLobeShare * sum) : 0;
+    probability_[kDiffuse] = d / (d + s);
+    specularProbability_ = s / (d + s);
+    if (specular > 0) reflectedShare_ = reflected / specular;
+    probability_[kReflection] = specularProbability_ * reflectedShare_;
+    probability_[kTransmission] = specularProbability_ * (1 - reflectedShare_);
+}
+
+/// Chance that a specular sample whose facet has this reflectance, and passes on `through` of the light, reflects.
+float Bsdf::reflectionChance(const Vec3& reflected, float through) const {
+    if (deltaTransmission_) return reflectedShare_;
+    const float r = luminance(reflected), t = luminance(transmissionTint_) * through;
+    return r > 0 ? r / (r + t) : 0;
 }
 
 Vec2 Bsdf::schlickAlbedo(float cosTheta) const {
@@ -112,11 +122,16 @@ Vec2 Bsdf::schlickAlbedo(float cosTheta) const {
     return {1 - s, s};
 }
 
-/// Fresnel term of the reflection lobe for the angle to the facet.
-Vec3 Bsdf::reflectance(float cosTheta) const {
-    Vec3 f = f0_ + (Vec3(f90_) - f0_) * schlickWeight(cosTheta);
-    if (!isBlack(boundaryTint_)) f += boundaryTint_ * fresnelDielectric(std::min(cosTheta, 1.0f), eta_);
-    return f;
+/// What a facet does with light at this cosine.
+Bsdf::Facet Bsdf::facetAt(float cosTheta) const {
+    Facet facet{f0_ + (Vec3(f90_) - f0_) * schlickWeight(cosTheta)};
+    if (hasBoundary_) {
+        const float f = fresnelDielectric(std::min(cosTheta, 1.0f), eta_);
+        facet.reflected += boundaryTint_ * f;
+        facet.through = 1 - f;
+    }
+    facet.reflectionChance = hasBoundary_ ? reflectionChance(facet.reflected, facet.through) : 1;
+    return facet;
 }
 
 Bsdf::LobeValue Bsdf::diffuse(const Vec3& wi) const {
@@ -128,29 +143,31 @@ Bsdf::LobeValue Bsdf::diffuse(const Vec3& wi) const {
 Bsdf::LobeValue Bsdf::reflection(const Vec3& wi, const Vec3& h) const {
     const float cosFacet = glm::dot(wo_, h);
     if (wi.z <= 0 || cosFacet <= 0 || smooth_ || probability_[kReflection] == 0) return {};
-    const float facets = ggx_.distribution(h) / (4 * wo_.z);
-    return {reflectance(cosFacet) * (facets * maskingShadowing(lambdaO_, ggx_.lambda(wi))), facets / (1 + lambdaO_)};
+    const Facet facet = facetAt(cosFacet);
+    const float density = ggx_.distribution(h) / (4 * wo_.z);
+    return {facet.reflected * (density * maskingShadowing(lambdaO_, ggx_.lambda(wi))),
+            facet.reflectionChance * density / (1 + lambdaO_)};
 }
 
 /// The reflection lobe of the outer face, mirrored: `mirrored` is wi with z turned up.
 Bsdf::LobeValue Bsdf::transmissionThin(const Vec3& mirrored, const Vec3& h) const {
     const float cosFacet = glm::dot(wo_, h);
     if (mirrored.z <= 0 || cosFacet <= 0) return {};
-    const float facets = ggx_.distribution(h) / (4 * wo_.z);
-    const float through = 1 - fresnelDielectric(std::min(cosFacet, 1.0f), eta_);
-    return {transmissionTint_ * (through * facets * maskingShadowing(lambdaO_, ggx_.lambda(mirrored))),
-            facets / (1 + lambdaO_)};
+    const Facet facet = facetAt(cosFacet);
+    const float density = ggx_.distribution(h) / (4 * wo_.z);
+    return {transmissionTint_ * (facet.through * density * maskingShadowing(lambdaO_, ggx_.lambda(mirrored))),
+            (1 - facet.reflectionChance) * density / (1 + lambdaO_)};
 }
 
 /// [Walter 2007, eq. 17 and 21], without the square of the index (see the class).
 Bsdf::LobeValue Bsdf::transmissionSolid(const Vec3& wi, const Vec3& h) const {
     const float cosO = glm::dot(wo_, h), cosI = glm::dot(wi, h);
     if (wi.z >= 0 || cosO <= 0 || cosI >= 0) return {};
-    const float through = 1 - fresnelDielectric(std::min(cosO, 1.0f), eta_);
+    const Facet facet = facetAt(cosO);
     const float solidAngles = sqr(eta_) * -cosI / std::max(sqr(cosO + eta_ * cosI), 1e-20f);  // of h a wi
-    const float facets = ggx_.distribution(h) * cosO / wo_.z * solidAngles;
-    return {transmissionTint_ * (through * facets * maskingBothSides(lambdaO_, ggx_.lambda(wi))),
-            facets / (1 + lambdaO_)};
+    const float density = ggx_.distribution(h) * cosO / wo_.z * solidAngles;
+    return {transmissionTint_ * (facet.through * density * maskingBothSides(lambdaO_, ggx_.lambda(wi))),
+            (1 - facet.reflectionChance) * density / (1 + lambdaO_)};
 }
 
 Bsdf::LobeValue Bsdf::transmission(const Vec3& wi) const {
@@ -163,10 +180,10 @@ Bsdf::LobeValue Bsdf::transmission(const Vec3& wi) const {
 BsdfValue Bsdf::evaluate(const Vec3& wi) const {
     if (wi.z < 0) {
         const LobeValue t = transmission(wi);
-        return {Vec3(0), t.f, probability_[kTransmission] * t.pdf};
+        return {Vec3(0), t.f, specularProbability_ * t.pdf};
     }
     const LobeValue d = diffuse(wi), r = reflection(wi, halfVector(wo_ + wi));
-    return {d.f, r.f, probability_[kDiffuse] * d.pdf + probability_[kReflection] * r.pdf};
+    return {d.f, r.f, probability_[kDiffuse] * d.pdf + specularProbability_ * r.pdf};
 }
 
 Vec3 Bsdf::evaluate(const Vec3& wi, Lobe lobe) const {
@@ -186,30 +203,25 @@ BsdfSample Bsdf::deltaSample(Slot slot, const Vec3& wi) const {
 
 BsdfSample Bsdf::sampleDiffuse(Vec2 u) const {
     const Vec3 wi = sampleCosineHemisphere(u);
-    const LobeValue d = diffuse(wi), r = reflection(wi, halfVector(wo_ + wi));
-    const float pdf = probability_[kDiffuse] * d.pdf + probability_[kReflection] * r.pdf;
-    if (!(pdf > 0)) return {};
-    return {wi, (d.f + r.f) / pdf, pdf, false, Lobe::Diffuse};
+    return upperSample(wi, halfVector(wo_ + wi), Lobe::Diffuse);
 }
 
-BsdfSample Bsdf::sampleReflection(Vec2 u) const {
-    if (smooth_) return deltaSample(kReflection, {-wo_.x, -wo_.y, wo_.z});
-    const Vec3 h = ggx_.sampleVisibleNormal(wo_, u);
-    const Vec3 wi = glm::normalize(2 * glm::dot(wo_, h) * h - wo_);
+BsdfSample Bsdf::upperSample(const Vec3& wi, const Vec3& h, Lobe lobe) const {
     const LobeValue d = diffuse(wi), r = reflection(wi, h);
-    const float pdf = probability_[kDiffuse] * d.pdf + probability_[kReflection] * r.pdf;
+    const float pdf = probability_[kDiffuse] * d.pdf + specularProbability_ * r.pdf;
     if (!(pdf > 0)) return {};
-    return {wi, (d.f + r.f) / pdf, pdf, false, Lobe::SpecularReflection};
+    return {wi, (d.f + r.f) / pdf, pdf, false, lobe};
 }
 
-BsdfSample Bsdf::sampleTransmission(Vec2 u) const {
+BsdfSample Bsdf::deltaTransmissionSample() const {
+    if (!solid_) return deltaSample(kTransmission, -wo_);
     Vec3 wi;
-    if (deltaTransmission_) {
-        if (!solid_) return deltaSample(kTransmission, -wo_);
-        if (!refract(wo_, {0, 0, 1}, eta_, wi)) return {};
-        return deltaSample(kTransmission, glm::normalize(wi));
-    }
-    const Vec3 h = ggx_.sampleVisibleNormal(wo_, u);
+    if (!refract(wo_, {0, 0, 1}, eta_, wi)) return {};
+    return deltaSample(kTransmission, glm::normalize(wi));
+}
+
+BsdfSample Bsdf::transmissionSample(const Vec3& h) const {
+    Vec3 wi;
     LobeValue t;
     if (solid_) {
         if (!refract(wo_, h, eta_, wi)) return {};
@@ -220,19 +232,25 @@ BsdfSample Bsdf::sampleTransmission(Vec2 u) const {
         wi = {mirrored.x, mirrored.y, -mirrored.z};
         t = transmissionThin(mirrored, h);
     }
-    if (!(t.pdf > 0)) return {};
-    const float pdf = probability_[kTransmission] * t.pdf;
+    const float pdf = specularProbability_ * t.pdf;
+    if (!(pdf > 0)) return {};
     return {wi, t.f / pdf, pdf, false, Lobe::SpecularTransmission};
 }
 
+/// Reflects or transmits at one facet, by what that facet does: inside glass a few facets reflect totally, and chosen
+/// by the lobes' albedos they would be rare and bright.
+BsdfSample Bsdf::sampleSpecular(float choice, Vec2 u) const {
+    if (smooth_ && choice < reflectedShare_) return deltaSample(kReflection, {-wo_.x, -wo_.y, wo_.z});
+    if (deltaTransmission_ && choice >= reflectedShare_) return deltaTransmissionSample();
+    const Vec3 h = ggx_.sampleVisibleNormal(wo_, u);
+    const float cosFacet = glm::dot(wo_, h);
+    if (hasBoundary_ && choice >= facetAt(cosFacet).reflectionChance) return transmissionSample(h);
+    return upperSample(glm::normalize(2 * cosFacet * h - wo_), h, Lobe::SpecularReflection);
+}
+
 BsdfSample Bsdf::sample(float uLobe, Vec2 u) const {
-    if (isBlack(albedo_[kDiffuse]) && isBlack(specularAlbedo())) return {};
-    if (uLobe < probability_[kDiffuse]) return sampleDiffuse(u);
-    // Rounding may leave the sum of shares below uLobe: the last lobe that exists takes it.
-    const bool reflects = uLobe < probability_[kDiffuse] + probability_[kReflection];
-    if (probability_[kReflection] > 0 && (reflects || probability_[kTransmission] == 0)) return sampleReflection(u);
-    if (probability_[kTransmission] > 0) return sampleTransmission(u);
-    return sampleDiffuse(u);
+    if (specularProbability_ == 0 || uLobe < probability_[kDiffuse]) return sampleDiffuse(u);
+    return sampleSpecular(std::min((uLobe - probability_[kDiffuse]) / specularProbability_, 0x1.fffffep-1f), u);
 }
 
 Vec3 Bsdf::albedo(Lobe lobe) const {

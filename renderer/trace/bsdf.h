@@ -36,7 +36,8 @@ struct BsdfSample {
 /// The scattering function at one point for one outgoing direction, in the local frame (z is the shading normal on
 /// wo's side, wo.z > 0). Lobes:
 ///   diffuse: Lambert under the specular layer, weighted by what that layer lets through,
-///     f = rho/pi (1 - E(wo)) (1 - E(wi)) / (1 - Eavg)  [Kelemen & Szirmay-Kalos 2001], rho = baseColor (1-metallic)(1-transmission);
+///     f = rho/pi (1 - E(wo)) (1 - E(wi)) / (1 - Eavg)  [Kelemen & Szirmay-Kalos 2001],
+///     rho = baseColor (1-metallic)(1-transmission);
 ///   specular reflection: GGX with visible normals [Heitz 2018], Schlick Fresnel from ior, specular, specularColor and
 ///     (metals) baseColor; exact dielectric Fresnel where the base transmits;
 ///   specular transmission: rough dielectric [Walter 2007] for solids, mirrored-reflection lobe for thin walls.
@@ -54,7 +55,8 @@ public:
     Bsdf(const BsdfInputs& inputs, const Vec3& wo);
 
     BsdfValue evaluate(const Vec3& wi) const;
-    /// `uLobe` chooses the lobe in proportion to the luminance of its albedo (but each lobe at least kMinLobeShare).
+    /// `uLobe` chooses diffuse or specular by the luminance of their albedos (but each at least kMinLobeShare), and
+    /// then reflection or transmission by what the facet drawn does.
     BsdfSample sample(float uLobe, Vec2 u) const;
 
     /// Directional albedo towards wo of one lobe, and of all specular lobes together. In [0,1].
@@ -64,7 +66,7 @@ public:
     Vec3 evaluate(const Vec3& wi, Lobe lobe) const;
     /// True if every lobe is a delta: next-event estimation cannot contribute.
     bool isDelta() const;
-    /// Chance that sample() draws this lobe.
+    /// Chance that sample() draws this lobe, lost samples included: exact for deltas and the diffuse lobe.
     float probability(Lobe lobe) const;
 
     /// Makes the albedo tables that materials of this ior need (about 20 ms the first time), so that no path waits.
@@ -74,27 +76,35 @@ public:
 private:
     static constexpr float kMinLobeShare = 0.05f;
     enum Slot { kDiffuse, kReflection, kTransmission, kSlots };
-    /// f |cos| and the density of the lobe's own sampling.
+    /// f |cos| and the density of the sampling that makes the lobe (diffuse, or both specular ones together).
     struct LobeValue {
         Vec3 f{0};
         float pdf = 0;
+    };
+    struct Facet {
+        Vec3 reflected{0};           ///< Fresnel term of the reflection lobe
+        float through = 0;           ///< share that a dielectric boundary lets through
+        float reflectionChance = 1;  ///< of a specular sample at this facet
     };
 
     void setDiffuse(const Vec3& rho, float f0, float f90);
     void setSpecular(bool inside);
     void chooseProbabilities();
+    float reflectionChance(const Vec3& reflected, float through) const;
+    Vec2 schlickAlbedo(float cosTheta) const;
+    Facet facetAt(float cosTheta) const;
 
     LobeValue diffuse(const Vec3& wi) const;
     LobeValue reflection(const Vec3& wi, const Vec3& h) const;
     LobeValue transmissionThin(const Vec3& mirrored, const Vec3& h) const;
     LobeValue transmissionSolid(const Vec3& wi, const Vec3& h) const;
     LobeValue transmission(const Vec3& wi) const;
-    Vec3 reflectance(float cosTheta) const;
-    Vec2 schlickAlbedo(float cosTheta) const;
 
     BsdfSample sampleDiffuse(Vec2 u) const;
-    BsdfSample sampleReflection(Vec2 u) const;
-    BsdfSample sampleTransmission(Vec2 u) const;
+    BsdfSample sampleSpecular(float choice, Vec2 u) const;
+    BsdfSample upperSample(const Vec3& wi, const Vec3& h, Lobe lobe) const;
+    BsdfSample transmissionSample(const Vec3& h) const;
+    BsdfSample deltaTransmissionSample() const;
     BsdfSample deltaSample(Slot slot, const Vec3& wi) const;
 
     Vec3 wo_{0, 0, 1};
@@ -105,6 +115,7 @@ private:
     bool smooth_ = false;        ///< reflection is a delta
     bool deltaTransmission_ = false;
     bool solid_ = false;
+    bool hasBoundary_ = false;   ///< the base transmits: the exact Fresnel term takes part
 
     Vec3 diffuseScale_{0};       ///< rho (1 - E(wo)) / (1 - Eavg) / pi
     float layerF0_ = 0, layerF90_ = 0;  ///< of the dielectric layer over the diffuse base
@@ -115,6 +126,8 @@ private:
 
     Vec3 albedo_[kSlots] = {Vec3(0), Vec3(0), Vec3(0)};
     float probability_[kSlots] = {0, 0, 0};
+    float specularProbability_ = 0;  ///< of both specular lobes together
+    float reflectedShare_ = 1;       ///< of reflection among them, by albedo
 };
 
 }  // namespace lumi

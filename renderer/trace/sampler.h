@@ -29,7 +29,9 @@ private:
 namespace dimension {
 constexpr uint32_t kPixel = 0, kLens = 2, kTime = 4, kCamera = 6;
 constexpr uint32_t kLobe = 0, kBsdf = 2, kLight = 4, kLightPoint = 6, kRoulette = 8, kVertexDimensions = 10;
-inline uint32_t vertex(int depth, uint32_t use) { return kCamera + static_cast<uint32_t>(depth) * kVertexDimensions + use; }
+inline uint32_t vertex(int depth, uint32_t use) {
+    return kCamera + static_cast<uint32_t>(depth) * kVertexDimensions + use;
+}
 }  // namespace dimension
 
 }  // namespace lumi

@@ -1,0 +1,177 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "math/statistics.h"
+#include "math/transform.h"
+#include "physics/bsdf/materials.h"
+#include "trace/fresnel.h"
+#include "trace/sampler.h"
+
+namespace lumi::test {
+namespace {
+
+BsdfInputs glass(float roughness, bool entering = true, float ior = 1.5f) {
+    BsdfInputs inputs;
+    inputs.transmission = 1;
+    inputs.solid = true;
+    inputs.roughness = roughness;
+    inputs.entering = entering;
+    inputs.ior = ior;
+    return inputs;
+}
+
+TEST(Dielectric, FresnelKnownValues) {
+    EXPECT_NEAR(fresnelDielectric(1, 1.5f), 0.04f, 1e-6f);
+    EXPECT_NEAR(fresnelDielectric(1, 1 / 1.5f), 0.04f, 1e-6f);
+    EXPECT_NEAR(fresnelDielectric(0, 1.5f), 1, 1e-6f);
+    EXPECT_EQ(fresnelDielectric(0.7f, 1 / 1.5f), 1);  // beyond the critical cosine 0.745
+    // At Brewster's angle only the perpendicular part is reflected: half of ((n^2 - 1) / (n^2 + 1))^2.
+    const float brewster = 1 / std::sqrt(1 + 1.5f * 1.5f);
+    EXPECT_NEAR(fresnelDielectric(brewster, 1.5f), 0.5f * sqr(1.25f / 3.25f), 1e-6f);
+    EXPECT_NEAR(fresnelDielectric(0.3f, 1), 0, 1e-12f);
+    // The same pair of directions reflects the same from both sides.
+    const float cosI = 0.4f, cosT = std::sqrt(1 - (1 - cosI * cosI) / (1.5f * 1.5f));
+    EXPECT_NEAR(fresnelDielectric(cosI, 1.5f), fresnelDielectric(cosT, 1 / 1.5f), 1e-6f);
+}
+
+TEST(Dielectric, SmoothReflectsAndTransmitsAll) {
+    for (const bool entering : {true, false})
+        for (const float cosTheta : {1.0f, 0.8f, 0.5f, 0.1f, 0.001f}) {
+            const Bsdf bsdf(glass(0, entering), directionAt(cosTheta));
+            EXPECT_TRUE(bsdf.isDelta());
+            EXPECT_NEAR(bsdf.specularAlbedo().y, 1, 1e-6f) << entering << " " << cosTheta;
+        }
+}
+
+TEST(Dielectric, SmoothDirectionsObeySnell) {
+    for (const bool entering : {true, false}) {
+        const Vec3 wo = directionAt(0.85f);
+        const Bsdf bsdf(glass(0, entering), wo);
+        for (uint32_t i = 0; i < 64; ++i) {
+            const BsdfSample s = bsdf.sample((static_cast<float>(i) + 0.5f) / 64, {0.3f, 0.6f});
+            ASSERT_TRUE(s.delta);
+            EXPECT_EQ(s.pdf, 0);
+            EXPECT_NEAR(glm::length(s.wi), 1, 1e-6f);
+            const float ratio = s.lobe == Lobe::SpecularReflection ? 1 : entering ? 1.5f : 1 / 1.5f;
+            EXPECT_NEAR(-s.wi.x * ratio, wo.x, 1e-6f);
+            EXPECT_NEAR(-s.wi.y * ratio, wo.y, 1e-6f);
+            EXPECT_EQ(s.wi.z > 0, s.lobe == Lobe::SpecularReflection);
+        }
+    }
+}
+
+TEST(Dielectric, ThinWallGoesStraightOnTintedOnce) {
+    BsdfInputs inputs = glass(0);
+    inputs.solid = false;
+    inputs.baseColor = {0.9f, 0.5f, 0.2f};
+    const Vec3 wo = directionAt(0.6f);
+    const Bsdf bsdf(inputs, wo);
+    const BsdfSample s = bsdf.sample(0.999f, {0.5f, 0.5f});
+    ASSERT_EQ(s.lobe, Lobe::SpecularTransmission);
+    EXPECT_NEAR(glm::length(s.wi + wo), 0, 1e-6f);
+    const float through = 1 - fresnelDielectric(0.6f, 1.5f);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(bsdf.albedo(Lobe::SpecularTransmission)[c], through * inputs.baseColor[c], 1e-5f);
+        EXPECT_NEAR(s.weight[c] * bsdf.probability(s.lobe), through * inputs.baseColor[c], 1e-5f);
+    }
+}
+
+TEST(Dielectric, IndexOneIsNotThere) {
+    for (const bool solid : {true, false}) {
+        BsdfInputs inputs = glass(0.3f, true, 1);
+        inputs.solid = solid;
+        const Vec3 wo = directionAt(0.5f);
+        const Bsdf bsdf(inputs, wo);
+        EXPECT_NEAR(maxComponent(bsdf.albedo(Lobe::SpecularReflection)), 0, 1e-12f);
+        EXPECT_GT(bsdf.albedo(Lobe::SpecularTransmission).x, 0.97f);
+        if (!solid) continue;
+        EXPECT_NEAR(glm::length(bsdf.sample(0.5f, {0.2f, 0.2f}).wi + wo), 0, 1e-5f);
+    }
+}
+
+// Rough glass loses only what would have scattered twice or more between facets: little when nearly smooth.
+TEST(Dielectric, RoughLossIsBounded) {
+    const float roughnesses[] = {0.05f, 0.2f, 0.4f, 0.7f, 1}, least[] = {0.995f, 0.97f, 0.88f, 0.63f, 0.4f};
+    for (const bool entering : {true, false})
+        for (const float cosTheta : {1.0f, 0.7f, 0.4f})
+            for (int i = 0; i < 5; ++i) {
+                const float total = Bsdf(glass(roughnesses[i], entering), directionAt(cosTheta)).specularAlbedo().x;
+                EXPECT_LE(total, 1 + 1e-5f);
+                EXPECT_GE(total, least[i]) << roughnesses[i] << " " << cosTheta << " " << entering;
+            }
+}
+
+// With radiance over the square of the index transported, f(out, in) / n_in^2 = f(in, out) / n_out^2.
+TEST(Dielectric, RefractionIsReciprocal) {
+    int compared = 0;
+    for (uint32_t i = 0; i < 500; ++i) {
+        const SampleStream stream(SamplerKind::Independent, 0, 13, {9, 9, i});
+        const Vec3 wo = directionAt(0.1f + 0.9f * stream.get1(0));
+        const BsdfSample s = Bsdf(glass(0.5f), wo).sample(0.999f, stream.get2(2));
+        if (s.lobe != Lobe::SpecularTransmission || s.wi.z > -0.05f) continue;
+        const Vec3 backWo(s.wi.x, s.wi.y, -s.wi.z), backWi(wo.x, wo.y, -wo.z);
+        const float there = Bsdf(glass(0.5f), wo).evaluate(s.wi, Lobe::SpecularTransmission).x / -s.wi.z;
+        const float back = Bsdf(glass(0.5f, false), backWo).evaluate(backWi, Lobe::SpecularTransmission).x / wo.z;
+        ASSERT_NEAR(there / (1.5f * 1.5f * back), 1, 2e-3f);
+        ++compared;
+    }
+    EXPECT_GT(compared, 300);
+}
+
+/// Weight of a path from outside at `origin` along `direction` through a unit glass sphere in a furnace of radiance 1.
+double spherePath(const BsdfInputs& material, Vec3 origin, Vec3 direction, const RandomKey& key, int maxBounces) {
+    const SampleStream stream(SamplerKind::Independent, 0, 17, key);
+    double weight = 1;
+    bool outside = true;
+    for (int bounce = 0; bounce < maxBounces; ++bounce) {
+        const float b = glm::dot(origin, direction), c = glm::dot(origin, origin) - 1;
+        const float discriminant = b * b - c;
+        if (outside && (discriminant <= 0 || b > 0)) return weight;
+        const float distance = outside ? -b - std::sqrt(discriminant) : -b + std::sqrt(std::max(0.0f, discriminant));
+        origin = glm::normalize(origin + distance * direction);
+        const Frame frame(outside ? origin : -origin);
+        BsdfInputs inputs = material;
+        inputs.entering = outside;
+        const Bsdf bsdf(inputs, frame.toLocal(-direction));
+        const uint32_t dimension = static_cast<uint32_t>(bounce) * 4;
+        const BsdfSample s = bsdf.sample(stream.get1(dimension), stream.get2(dimension + 2));
+        if (s.lobe == Lobe::None) return 0;
+        weight *= s.weight.x;
+        if (s.wi.z < 0) outside = !outside;
+        direction = glm::normalize(frame.toWorld(s.wi));
+        if (outside) return weight;  // a sphere is not hit again from outside
+    }
+    return 0;
+}
+
+RunningMoments sphereFurnace(float roughness, uint32_t paths) {
+    RunningMoments moments;
+    for (uint32_t i = 0; i < paths; ++i) {
+        const SampleStream stream(SamplerKind::Independent, 0, 19, {1, 1, i});
+        const Vec2 u = stream.get2(0);
+        const float r = std::sqrt(u.x), phi = 2 * kPi * u.y;
+        const Vec3 origin(r * std::cos(phi), r * std::sin(phi), 3);
+        moments.add(spherePath(glass(roughness), origin, {0, 0, -1}, {2, 3, i}, 400));
+    }
+    return moments;
+}
+
+TEST(Dielectric, SmoothSphereVanishesInFurnace) {
+    const RunningMoments m = sphereFurnace(0, 20000);
+    EXPECT_NEAR(m.mean(), 1, std::max(4 * std::sqrt(m.meanVariance()), 1e-4));
+    EXPECT_LT(std::sqrt(m.meanVariance()), 0.01);
+}
+
+TEST(Dielectric, RoughSphereNeverGlows) {
+    double previous = 1;
+    for (const float roughness : {0.1f, 0.4f, 0.8f}) {
+        const RunningMoments m = sphereFurnace(roughness, 20000);
+        EXPECT_LE(m.mean(), previous + 4 * std::sqrt(m.meanVariance())) << roughness;
+        EXPECT_GE(m.mean(), 0.4) << roughness;
+        previous = m.mean();
+    }
+}
+
+}  // namespace
+}  // namespace lumi::test
