@@ -6,9 +6,9 @@
 #include "base/files.h"
 #include "image/hdr.h"
 #include "scene/defaults.h"
-#include "scene/gltf/gltf.h"
+#include "scene/gltf/load_gltf.h"
 #include "scene/light_body.h"
-#include "scene/obj/obj.h"
+#include "scene/obj/load_obj.h"
 #include "scene/scene_file.h"
 
 namespace lumi {

@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "scene/gltf/gltf.h"
-#include "scene/obj/obj.h"
+#include "scene/gltf/load_gltf.h"
+#include "scene/obj/load_obj.h"
 #include "scene/procedural/procedural.h"
 #include "scene/scene_file_parts.h"
 

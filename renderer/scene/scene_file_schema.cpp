@@ -14,7 +14,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json text(const char* help) { return {{"type", "string"}, {"description", help}}; }
-Json number(const char* help) { return {{"type", "number"}, {"description", help}}; }
 Json numbers(int count, const char* help) {
     return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", count}, {"maxItems", count},
             {"description", help}};
