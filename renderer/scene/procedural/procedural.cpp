@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "scene/procedural/generators.h"
 #include "scene/procedural/primitives.h"
 
 namespace lumi {
@@ -18,6 +19,29 @@ constexpr std::array kProcedurals{
     ProceduralEntry{"torus", "A ring about Y.", makeTorus},
     ProceduralEntry{"plane-grid", "A flat rectangle of many quads.", makePlaneGrid},
     ProceduralEntry{"hairball", "Thin curled strands that grow from a centre.", makeHairball},
+    ProceduralEntry{"room-shell", "A room with a window opening, skirting boards and a cornice.", makeRoomShell},
+    ProceduralEntry{"window", "A window frame with mullions and a sill.", makeWindow},
+    ProceduralEntry{"sofa", "An upholstered seat with loose cushions.", makeSofa},
+    ProceduralEntry{"pillow", "A loose square pillow on its edge.", makePillow},
+    ProceduralEntry{"table", "A table of boards on slanted legs.", makeTable},
+    ProceduralEntry{"bookshelf", "A case of shelves full of books.", makeBookshelf},
+    ProceduralEntry{"book-stack", "Books lying on each other.", makeBookStack},
+    ProceduralEntry{"rug", "A rug with a fringe; uv from 0 to 1.", makeRug},
+    ProceduralEntry{"picture-frame", "A framed picture against z = 0; its uv from 0 to 1.", makePictureFrame},
+    ProceduralEntry{"lamp", "A standing lamp with a cloth shade.", makeFloorLamp},
+    ProceduralEntry{"plant", "A potted plant with arching leaves.", makePlant},
+    ProceduralEntry{"vessel", "Turned ware: vases, bowls, urns, plates, candlesticks.", makeVessel},
+    ProceduralEntry{"drape", "Cloth that hangs in folds from a rod along X.", makeDrape},
+    ProceduralEntry{"tablecloth", "A cloth on a table top that falls over its front edge.", makeTablecloth},
+    ProceduralEntry{"hall", "A court with vaulted galleries on floors of arches.", makeHall},
+    ProceduralEntry{"drinking-glass", "A glass with a filling, closed solids.", makeDrinkingGlass},
+    ProceduralEntry{"wine-bottle", "A bottle with wine, cork and label.", makeBottle},
+    ProceduralEntry{"fruit", "An apple, a pear, a lemon or an orange.", makeFruit},
+    ProceduralEntry{"grapes", "A bunch of grapes, its berries instanced.", makeGrapes},
+    ProceduralEntry{"creature", "A long-necked walker: skinned, with a looping gait.", makeCreature},
+    ProceduralEntry{"blob", "A ball that morphs between lobed forms.", makeBlob},
+    ProceduralEntry{"gear", "A toothed wheel about Z.", makeGear},
+    ProceduralEntry{"spinning-top", "A turned top in painted bands, on its tip.", makeSpinningTop},
 };
 
 constexpr std::array kTextures{
