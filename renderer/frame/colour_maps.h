@@ -5,7 +5,7 @@
 
 namespace lumi {
 
-/// Entries of a map's table: enough that neighbouring ones differ by at most one level in each byte.
+/// Entries of a map's table: neighbouring ones differ by at most four levels in each byte.
 inline constexpr int kColourTableSize = 1024;
 
 /// Colours of a map, evenly over [0, 1], as 0xAABBGGRR. Throws Error(Usage) for an unknown map.
