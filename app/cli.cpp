@@ -1,0 +1,328 @@
+#include "app/cli.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+
+#include "base/error.h"
+#include "reconstruct/catalog.h"
+#include "scene/load.h"
+
+namespace lumi {
+namespace {
+
+constexpr const char* kVersionText = "lumiscope 0.1.0";
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 good; 1 a check did not hold; 2 usage, unknown scene, module or id; 3 bad input, replayed scene\n"
+    "changed; 4 no display or OpenGL; 5 memory limit, disk full; 130 interrupted.";
+
+/// What the user typed for the options that are shared by several commands.
+struct SharedText {
+    std::vector<std::string> set;
+    std::string size, camera, exposure, fps, spp, seed;
+};
+
+std::string sceneList() {
+    std::string text = "Scenes: a path (.json .gltf .glb .obj, or an .hdr/.exr sky), or one of:\n";
+    for (const SceneEntry& entry : listScenes()) text += fmt::format("  {:<14}{}\n", entry.name, entry.title);
+    return text;
+}
+
+std::string moduleList() {
+    std::string text = "Modules:\n";
+    for (const ModuleEntry& entry : moduleCatalog()) text += fmt::format("  {:<14}{}\n", entry.id, entry.title);
+    return text + "  An instance is a module with parameters of its own: svgf, svgf@b.\n";
+}
+
+std::string mainFooter() {
+    return "Examples:\n"
+           "  lumiscope                                    the window, on the built-in atrium\n"
+           "  lumiscope room                               the window, on another scene\n"
+           "  lumiscope render cornell --spp 64 --out cornell.exr --out cornell.png\n"
+           "  lumiscope list parameters                    everything that --set knows\n\n" +
+           sceneList() + "\n" + kExitCodes;
+}
+
+std::string renderFooter() {
+    return "Examples:\n"
+           "  lumiscope render cornell --spp 256 --out cornell.png\n"
+           "  lumiscope render parade --frames 0..120 --fps 30 --out parade.mp4\n"
+           "  lumiscope render atrium --module none --frames 8 --buffers all --out atrium.%04d.exr\n"
+           "  lumiscope render room --set path.max-depth=3 --set camera.aperture=0.02 --size 640x360\n"
+           "  lumiscope render --replay cornell.png --out again.png\n\n" +
+           sceneList() + moduleList() + "\n" + kExitCodes;
+}
+
+template <class T>
+T parseWhole(const std::string& text, const std::string& option, const char* expected, T least) {
+    T value{};
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (code != std::errc() || end != text.data() + text.size() || value < least)
+        throwUsage({"not understood", option, expected, '"' + text + '"'});
+    return value;
+}
+
+Extent2 parseSize(const std::string& text, const std::string& option) {
+    const size_t x = text.find('x');
+    const char* expected = "WIDTHxHEIGHT, as 1280x720";
+    if (x == std::string::npos) throwUsage({"not understood", option, expected, '"' + text + '"'});
+    return {parseWhole<int>(text.substr(0, x), option, expected, 1),
+            parseWhole<int>(text.substr(x + 1), option, expected, 1)};
+}
+
+FrameRange parseFrames(const std::string& text) {
+    const char* expected = "a number N, or a range A..B with A < B";
+    const size_t dots = text.find("..");
+    FrameRange range;
+    if (dots == std::string::npos) {
+        range.end = parseWhole<int64_t>(text, "--frames", expected, 1);
+    } else {
+        range.begin = parseWhole<int64_t>(text.substr(0, dots), "--frames", expected, 0);
+        range.end = parseWhole<int64_t>(text.substr(dots + 2), "--frames", expected, 0);
+        if (range.begin >= range.end) throwUsage({"not understood", "--frames", expected, '"' + text + '"'});
+    }
+    if (range.end > 10'000'000) throwUsage({"too many frames", "--frames", "at most 10000000", '"' + text + '"'});
+    return range;
+}
+
+void addShared(CLI::App& app, SharedText& text, SceneOptions& scene) {
+    app.add_option("--module", scene.modules, "Method that makes the image, as `list modules` names it")
+        ->type_name("INSTANCE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option("--set", text.set, "Set any parameter of `list parameters`; repeatable")
+        ->type_name("ID=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option("--size", text.size, "Size of the rendered image (the scene's, else 1280x720)")->type_name("WxH");
+    app.add_option("--spp", text.spp, "Samples a pixel in each frame (1)")->type_name("N");
+    app.add_option("--fps", text.fps, "Frames a second: frame f shows time f/F (60)")->type_name("F");
+    app.add_option("--camera", text.camera, "Camera of the scene by name or number (the first)")
+        ->type_name("NAME|INDEX");
+    app.add_option("--seed", text.seed, "Another set of random numbers (0)")->type_name("N");
+    app.add_option("--exposure", text.exposure, "Exposure of PNG, video and screen, in stops (the scene's)")
+        ->type_name("EV");
+}
+
+void addMachine(CLI::App& app, MachineOptions& machine, bool computes) {
+    app.add_flag("--json", machine.json, "Print the result as one JSON value on standard output");
+    app.add_flag("--quiet", machine.quiet, "Print nothing but errors");
+    if (!computes) return;
+    app.add_option("--threads", machine.threads, "Threads to use (one for each core); never changes the image")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1024));
+    app.add_option("--isa", machine.isa, "Instruction set to use: baseline, v3 or v4 (the best)")->type_name("NAME");
+    app.add_option("--memory-limit", machine.memoryLimit, "Refuse to use more, as 8G or 50% (75%)")->type_name("SIZE");
+}
+
+/// Options in the order in which they take effect: those with a name of their own first, then --set as typed.
+void finishShared(const SharedText& text, SceneOptions& scene) {
+    auto& values = scene.values;
+    for (size_t i = 0; i < scene.modules.size() && i < 2; ++i)
+        values.emplace_back(fmt::format("view.{}.module", i), scene.modules[i]);
+    if (!text.size.empty()) {
+        const Extent2 size = parseSize(text.size, "--size");
+        values.emplace_back("render.width", std::to_string(size.width));
+        values.emplace_back("render.height", std::to_string(size.height));
+    }
+    const std::pair<const char*, const std::string*> named[] = {{"render.spp", &text.spp},
+                                                                {"render.fps", &text.fps},
+                                                                {"render.seed", &text.seed},
+                                                                {"camera.select", &text.camera},
+                                                                {"view.0.exposure", &text.exposure}};
+    for (const auto& [id, value] : named)
+        if (!value->empty()) values.emplace_back(id, *value);
+    for (const std::string& entry : text.set) {
+        const size_t equals = entry.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throwUsage({"not understood", "--set", "ID=VALUE", '"' + entry + '"'});
+        values.emplace_back(entry.substr(0, equals), entry.substr(equals + 1));
+    }
+}
+
+/// Says which option was meant, where CLI11 only says which one it does not know.
+[[noreturn]] void throwParseError(const CLI::App& app, const CLI::ParseError& error) {
+    const CLI::App* active = &app;
+    if (!app.get_subcommands().empty()) active = app.get_subcommands().front();
+    std::vector<std::string> known;
+    for (const CLI::Option* option : active->get_options())
+        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    for (const std::string& word : active->remaining()) {
+        if (word.compare(0, 2, "--") != 0) continue;
+        const std::string near = nearestName(word.substr(0, word.find('=')), known);
+        throwUsage({"unknown option " + word, "", near.empty() ? "one of those in --help" : near, ""});
+    }
+    std::string text = error.what();
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    throwUsage({text + " (see --help)", "", "", ""});
+}
+
+/// One object with a member for each value that CLI11 fills.
+class Parser {
+public:
+    Parser() : app_("Path-traces scenes and reconstructs clean, stable images from few samples.", "lumiscope") {
+        app_.set_version_flag("--version", kVersionText);
+        app_.set_help_flag("-h,--help", "Print this help");
+        app_.footer(mainFooter);
+        app_.require_subcommand(0, 1);
+        app_.get_formatter()->column_width(34);
+        addWindow();
+        addRender();
+        addInfo();
+        addList();
+        addView();
+    }
+
+    CommandLine parse(int argc, const char* const* argv) {
+        try {
+            app_.parse(argc, argv);
+        } catch (const CLI::CallForVersion&) {
+            return printed(std::string(kVersionText) + "\n");
+        } catch (const CLI::CallForHelp&) {
+            const auto used = app_.get_subcommands();
+            return printed(used.empty() ? app_.help() : used.front()->help());
+        } catch (const CLI::ParseError& error) {
+            throwParseError(app_, error);
+        }
+        return finished();
+    }
+
+private:
+    CommandLine printed(std::string text) {
+        CommandLine line;
+        line.command = Command::PrintAndExit;
+        line.text = std::move(text);
+        return line;
+    }
+
+    void addWindow() {
+        app_.add_option("scene", line_.scene.scene, "Scene to open (atrium)")->type_name("SCENE");
+        addShared(app_, windowText_, line_.scene);
+        addMachine(app_, line_.machine, true);
+        app_.add_option("--captures", line_.captures, "Folder for screenshots (the current one)")->type_name("DIR");
+        app_.add_option("--ui-map", line_.uiMap, "Write where every item of the window is to this file, as JSON")
+            ->type_name("FILE")
+            ->group("Testing");
+    }
+
+    void addRender() {
+        CLI::App* app = render_ = app_.add_subcommand("render", "Render frames through one module, without a window");
+        RenderOptions& render = line_.render;
+        app->add_option("scene", render.scene.scene, "Scene to render: a name or a path")->type_name("SCENE");
+        app->add_option("--replay", render.replay, "Make the image of a .exr, .png or .json again from the state inside")
+            ->type_name("FILE");
+        addShared(*app, renderText_, render.scene);
+        app->add_option("--frames", frames_, "Frames 0..N-1, or A..B without B; history is empty at A (1)")
+            ->type_name("N|A..B");
+        app->add_option("--warm-up", warmUp_, "Frames to run before the first without writing them (0)")->type_name("N");
+        app->add_option("--out", render.out,
+                        "File to write: .exr, .png or .mp4, %04d is the frame number; repeatable "
+                        "(<scene>.<module>.exr, a free name)")
+            ->type_name("PATH")
+            ->expected(1)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        app->add_option("--buffers", render.buffers, "Layers to add to .exr files, as `list buffers` names them, or all")
+            ->type_name("NAME,...");
+        app->add_flag("--half", render.half, "Store colours of .exr files as half");
+        app->add_option("--progress", progress_, "auto (if standard error is a terminal), always or never")
+            ->type_name("WHEN")
+            ->check(CLI::IsMember({"auto", "always", "never"}));
+        addMachine(*app, line_.machine, true);
+        app->footer(renderFooter);
+    }
+
+    void addInfo() {
+        CLI::App* app = info_ = app_.add_subcommand("info", "Tell what a scene holds, and every warning");
+        app->add_option("scene", infoScene_, "Scene to read: a name or a path")->required()->type_name("SCENE");
+        app->add_option("--set", infoText_.set, "scene.index=N or scene.variant=NAME")
+            ->type_name("ID=VALUE")
+            ->expected(1)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        addMachine(*app, line_.machine, true);
+        app->footer("Example:\n  lumiscope info atrium --json");
+    }
+
+    void addList() {
+        CLI::App* app = list_ = app_.add_subcommand("list", "List what there is: scenes, modules, buffers, parameters");
+        app->add_option("what", line_.list.what, "scenes, modules, buffers or parameters")
+            ->required()
+            ->type_name("WHAT")
+            ->check(CLI::IsMember({"scenes", "modules", "buffers", "parameters"}));
+        app->add_option("--module", line_.list.module, "Only what belongs to this module")->type_name("INSTANCE");
+        addMachine(*app, line_.machine, false);
+        app->footer("Examples:\n  lumiscope list parameters --module accumulate\n  lumiscope list buffers --json");
+    }
+
+    void addView() {
+        CLI::App* app = view_ = app_.add_subcommand("view", "Draw the window's content into PNGs, without a display");
+        app->add_option("scene", viewScene_.scene, "Scene to open: a name or a path")->required()->type_name("SCENE");
+        app->add_flag("--offscreen", offscreen_, "Draw without a display");
+        app->add_option("--out", line_.view.out, "Folder for the PNGs; made if missing")->type_name("DIR");
+        app->add_option("--script", line_.view.script, "Input events to play, one a line")->type_name("FILE");
+        app->add_option("--window", windowSize_, "Size of the window's content (1280x800)")->type_name("WxH");
+        app->add_option("--samples", line_.view.samples, "Without a script: samples a pixel before the shot (16)")
+            ->type_name("N")
+            ->check(CLI::Range(1, 1 << 20));
+        addShared(*app, viewText_, viewScene_);
+        addMachine(*app, line_.machine, true);
+        app->footer("Example:\n  lumiscope view cornell --offscreen --out shots --module accumulate --module none");
+    }
+
+    CommandLine finished() {
+        if (render_->parsed()) finishRender();
+        else if (info_->parsed()) finishInfo();
+        else if (list_->parsed()) line_.command = Command::List;
+        else if (view_->parsed()) finishView();
+        else finishShared(windowText_, line_.scene);
+        return line_;
+    }
+
+    void finishRender() {
+        line_.command = Command::Render;
+        RenderOptions& render = line_.render;
+        finishShared(renderText_, render.scene);
+        if (render.scene.modules.size() > 1)
+            throwUsage({"render runs one module", "--module", "one instance", ""});
+        if (!frames_.empty()) render.frames = parseFrames(frames_);
+        if (!warmUp_.empty()) render.warmUp = parseWhole<int64_t>(warmUp_, "--warm-up", "a number of frames", 0);
+        render.progress = progress_ == "always" ? Progress::Always : progress_ == "never" ? Progress::Never : Progress::Auto;
+        if (render.scene.scene.empty() && render.replay.empty())
+            throwUsage({"render needs a scene", "", "lumiscope render SCENE, or --replay FILE", ""});
+        if (!render.replay.empty() && (!render.scene.values.empty() || !frames_.empty() || !warmUp_.empty() ||
+                                       !render.buffers.empty() || render.half))
+            throwUsage({"everything about the image comes from the file", "--replay",
+                        "only SCENE (where it is now), --out and options of the machine beside it", ""});
+    }
+
+    void finishInfo() {
+        line_.command = Command::Info;
+        line_.scene = {};
+        line_.scene.scene = infoScene_;
+        finishShared(infoText_, line_.scene);
+    }
+
+    void finishView() {
+        line_.command = Command::View;
+        line_.scene = viewScene_;
+        finishShared(viewText_, line_.scene);
+        if (!offscreen_) throwUsage({"view draws without a display", "", "--offscreen", ""});
+        if (line_.view.out.empty()) throwUsage({"view needs a folder", "", "--out DIR", ""});
+        if (!windowSize_.empty()) line_.view.size = parseSize(windowSize_, "--window");
+    }
+
+    CLI::App app_;
+    CLI::App *render_ = nullptr, *info_ = nullptr, *list_ = nullptr, *view_ = nullptr;
+    CommandLine line_;
+    SharedText windowText_, renderText_, infoText_, viewText_;
+    SceneOptions viewScene_;
+    std::string infoScene_, frames_, warmUp_, progress_ = "auto", windowSize_;
+    bool offscreen_ = false;
+};
+
+}  // namespace
+
+CommandLine parseCommandLine(int argc, const char* const* argv) { return Parser().parse(argc, argv); }
+
+}  // namespace lumi

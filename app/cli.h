@@ -1,0 +1,68 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/view.h"
+
+namespace lumi {
+
+/// Options of every command that sets up the machine or what is printed.
+struct MachineOptions {
+    int threads = 0;          ///< 0: one for each core
+    std::string isa;          ///< empty: the best
+    std::string memoryLimit;  ///< empty: the default
+    bool json = false, quiet = false;
+};
+
+/// What is rendered and how, as document values in the order in which they apply.
+struct SceneOptions {
+    std::string scene;                 ///< name or path as typed; may be empty
+    std::vector<std::string> modules;  ///< instances
+    /// Parameter id and text: the options that are parameters, then those of --set.
+    std::vector<std::pair<std::string, std::string>> values;
+};
+
+/// Half-open.
+struct FrameRange {
+    int64_t begin = 0, end = 1;
+};
+
+enum class Progress { Auto, Always, Never };
+
+struct RenderOptions {
+    SceneOptions scene;
+    std::filesystem::path replay;
+    FrameRange frames;
+    int64_t warmUp = 0;
+    std::vector<std::string> out;
+    std::string buffers;
+    bool half = false;
+    Progress progress = Progress::Auto;
+};
+
+struct ListOptions {
+    std::string what;    ///< scenes, modules, buffers, parameters
+    std::string module;  ///< only what belongs to it
+};
+
+enum class Command { Window, Render, Info, List, View, PrintAndExit };
+
+struct CommandLine {
+    Command command = Command::Window;
+    MachineOptions machine;
+    RenderOptions render;   ///< Render
+    SceneOptions scene;     ///< Window, Info, View
+    ListOptions list;       ///< List
+    ViewOptions view;       ///< View: script, out, samples, size; View and Window fill `start` from `scene`
+    std::filesystem::path uiMap, captures;  ///< Window
+    std::string text;       ///< PrintAndExit: help or version
+};
+
+/// Throws Error(Usage).
+CommandLine parseCommandLine(int argc, const char* const* argv);
+
+}  // namespace lumi

@@ -1,0 +1,38 @@
+#include "app/commands.h"
+
+#include "base/error.h"
+#include "base/isa.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+
+namespace lumi {
+
+void applyMachine(const MachineOptions& machine) {
+    if (machine.threads > 0) setThreadCount(machine.threads);
+    if (!machine.isa.empty()) setIsa(parseIsa(machine.isa));
+    if (!machine.memoryLimit.empty()) setMemoryLimit(parseBytes(machine.memoryLimit));
+}
+
+std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const SceneOptions& options, MessageLog& log,
+                                       std::stop_token stop) {
+    LoadOptions load;
+    load.stop = stop;
+    for (const auto& [id, text] : options.values) {
+        if (id == "scene.variant") load.variant = text;
+        if (id != "scene.index") continue;
+        try {
+            load.sceneIndex = std::stoi(text);
+        } catch (const std::exception&) {
+            throwUsage({"\"scene.index\" has the wrong type", "--set", "a whole number", '"' + text + '"'});
+        }
+    }
+    return loadScene(file, log, load);
+}
+
+Document makeDocument(std::shared_ptr<const Scene> scene, const SceneOptions& options) {
+    Document document(std::move(scene));
+    for (const auto& [id, text] : options.values) document.setText(id, text, "--set");
+    return document;
+}
+
+}  // namespace lumi

@@ -1,0 +1,28 @@
+#pragma once
+#include <memory>
+#include <stop_token>
+
+#include "app/cli.h"
+#include "base/messages.h"
+#include "scene/load.h"
+#include "session/document.h"
+
+namespace lumi {
+
+// Each command returns the program's exit code and throws Error; results go to standard output, all else to standard
+// error.
+int runRender(const RenderOptions& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop);
+int runInfo(const SceneOptions& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop);
+int runList(const ListOptions& options, const MachineOptions& machine);
+
+/// Threads, instruction set and memory limit, before anything is computed.
+void applyMachine(const MachineOptions& machine);
+
+/// The scene that the options name, with the scene.index and scene.variant among their values.
+std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const SceneOptions& options, MessageLog& log,
+                                       std::stop_token stop);
+
+/// A document of the scene with all values of the options.
+Document makeDocument(std::shared_ptr<const Scene> scene, const SceneOptions& options);
+
+}  // namespace lumi

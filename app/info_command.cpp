@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "app/commands.h"
+#include "base/memory.h"
+
+namespace lumi {
+using nlohmann::json;
+namespace {
+
+const char* lightTypeName(LightType type) {
+    static const char* names[] = {"point", "spot", "directional", "rectangle", "disk", "sphere"};
+    return names[static_cast<int>(type)];
+}
+
+int64_t meshCount(const Scene& scene) {
+    std::set<const Mesh*> meshes;
+    for (const Instance& instance : scene.instances) meshes.insert(instance.mesh.get());
+    return static_cast<int64_t>(meshes.size());
+}
+
+int64_t emittingMaterials(const Scene& scene) {
+    int64_t count = 0;
+    for (const Material& material : scene.materials) count += material.emits();
+    return count;
+}
+
+json vectorJson(const Vec3& v) { return json::array({v.x, v.y, v.z}); }
+
+json infoJson(const Scene& scene, const std::filesystem::path& file, const MessageLog& log) {
+    const Bounds3 bounds = scene.restBounds();
+    json materials = json::array(), lights = json::array(), cameras = json::array(), instances = json::array();
+    std::vector<std::string> materialNames, lightNames, cameraNames;
+    for (const Material& m : scene.materials) materialNames.push_back(m.name);
+    for (const Light& l : scene.lights) lightNames.push_back(l.name);
+    for (const SceneCamera& c : scene.cameras) cameraNames.push_back(c.camera.name);
+    const std::vector<std::string> materialIds = slugs(materialNames, "material"), lightIds = slugs(lightNames, "light"),
+                                   cameraIds = slugs(cameraNames, "camera");
+    for (size_t i = 0; i < materialIds.size(); ++i)
+        materials.push_back({{"id", materialIds[i]}, {"title", materialNames[i]}, {"emits", scene.materials[i].emits()}});
+    for (size_t i = 0; i < lightIds.size(); ++i)
+        lights.push_back({{"id", lightIds[i]}, {"title", lightNames[i]}, {"type", lightTypeName(scene.lights[i].type)}});
+    for (size_t i = 0; i < cameraIds.size(); ++i)
+        cameras.push_back({{"id", cameraIds[i]}, {"title", cameraNames[i]}, {"eye", vectorJson(scene.cameras[i].camera.eye)},
+                           {"look_at", vectorJson(scene.cameras[i].camera.target)}});
+    return {{"title", scene.title},
+            {"path", file.string()},
+            {"content_digest", scene.contentDigest},
+            {"triangles", scene.triangleCount()},
+            {"instances", scene.instances.size()},
+            {"meshes", meshCount(scene)},
+            {"materials", std::move(materials)},
+            {"lights", std::move(lights)},
+            {"environment", scene.environment.visible()},
+            {"cameras", std::move(cameras)},
+            {"animated", scene.isAnimated()},
+            {"duration_s", scene.duration()},
+            {"bounds", bounds.empty() ? json() : json{{"min", vectorJson(bounds.lower)}, {"max", vectorJson(bounds.upper)}}},
+            {"memory_bytes", scene.byteCount()},
+            {"peak_memory_bytes", peakResidentBytes()},
+            {"warnings", log.warnings()}};
+}
+
+/// "a, b, c and 7 more", names by their ids.
+std::string someOf(const json& things) {
+    constexpr size_t shown = 6;
+    std::string text;
+    for (size_t i = 0; i < std::min(shown, things.size()); ++i)
+        text += (i ? ", " : "") + things[i]["id"].get<std::string>();
+    if (things.size() > shown) text += fmt::format(" and {} more", things.size() - shown);
+    return text;
+}
+
+void printInfo(const json& info, const Scene& scene) {
+    const auto line = [](const char* name, const std::string& text) { std::puts(fmt::format("{:<12}{}", name, text).c_str()); };
+    line("scene", info["title"].get<std::string>().empty() ? "(untitled)" : info["title"].get<std::string>());
+    line("file", info["path"].get<std::string>());
+    line("geometry", fmt::format("{} triangles in {} instances of {} meshes", scene.triangleCount(), scene.instances.size(),
+                                 meshCount(scene)));
+    line("materials", fmt::format("{}: {}", scene.materials.size(), someOf(info["materials"])));
+    std::string lights = fmt::format("{}{}{}", scene.lights.size(), scene.lights.empty() ? "" : ": ", someOf(info["lights"]));
+    if (const int64_t emitting = emittingMaterials(scene)) lights += fmt::format("; {} emitting materials", emitting);
+    if (scene.environment.visible())
+        lights += "; sky" + (scene.environment.file.empty() ? std::string() : " " + scene.environment.file);
+    line("lights", lights);
+    line("cameras", fmt::format("{}: {}", scene.cameras.size(), someOf(info["cameras"])));
+    line("animation", scene.isAnimated() ? fmt::format("{:g} s", scene.duration()) : "none");
+    const Bounds3 bounds = scene.restBounds();
+    if (!bounds.empty())
+        line("bounds", fmt::format("{:.3g} x {:.3g} x {:.3g} m, from ({:.3g}, {:.3g}, {:.3g}) to ({:.3g}, {:.3g}, {:.3g})",
+                                   bounds.size().x, bounds.size().y, bounds.size().z, bounds.lower.x, bounds.lower.y,
+                                   bounds.lower.z, bounds.upper.x, bounds.upper.y, bounds.upper.z));
+    line("memory", formatBytes(scene.byteCount()));
+    line("warnings", info["warnings"].empty() ? "none" : std::to_string(info["warnings"].size()));
+    for (const json& warning : info["warnings"]) std::puts(("  " + warning.get<std::string>()).c_str());
+}
+
+}  // namespace
+
+int runInfo(const SceneOptions& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop) {
+    const std::filesystem::path file = findScene(options.scene);
+    const auto scene = openScene(file, options, log, stop);
+    makeDocument(scene, options);
+    const json info = infoJson(*scene, file, log);
+    if (machine.json) std::puts(info.dump(2).c_str());
+    else printInfo(info, *scene);
+    return 0;
+}
+
+}  // namespace lumi

@@ -1,0 +1,221 @@
+#include "app/render_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "base/isa.h"
+#include "base/memory.h"
+
+namespace lumi {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+std::string fileName(const std::string& instance) {
+    std::string name = instance;
+    std::replace(name.begin(), name.end(), '@', '-');
+    return name;
+}
+
+/// `<scene>.<module>.exr` in the current folder, with a number if that exists.
+std::string defaultOutput(const fs::path& scene, const std::string& instance) {
+    return unusedPath(scene.stem().string() + "." + fileName(instance) + ".exr").string();
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const size_t half = values.size() / 2;
+    return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+/// What is told at the end, gathered frame by frame.
+class Summary {
+public:
+    void add(const FrameOutput& frame) {
+        ++frames_;
+        rays_ += frame.rays.total();
+        nonFinite_ += frame.rays.nonFinite;
+        for (const auto& [stage, ms] : frame.stagesMs) {
+            if (!stages_.count(stage)) order_.push_back(stage);
+            stages_[stage].push_back(ms);
+            if (stage == "trace") traceMs_ += ms;
+        }
+    }
+    void print(const RenderOutputs& outputs, const MachineOptions& machine, MessageLog& log, double seconds) const {
+        if (nonFinite_ > 0) log.warning(fmt::format("{} path contributions were not finite and were dropped", nonFinite_));
+        const double mraysPerSecond = traceMs_ > 0 ? static_cast<double>(rays_) / traceMs_ / 1000 : 0;
+        if (machine.json) {
+            json stages = json::object();
+            for (const std::string& stage : order_) stages[stage] = median(stages_.at(stage));
+            const json result = {{"frames", frames_},        {"stages_ms", stages},
+                                 {"rays", rays_},            {"mrays_per_s", mraysPerSecond},
+                                 {"files", outputs.files()}, {"peak_memory_bytes", peakResidentBytes()},
+                                 {"warnings", log.warnings()}};
+            std::puts(result.dump(2).c_str());
+        }
+        if (machine.quiet) return;
+        const size_t shown = std::min<size_t>(outputs.files().size(), 4);
+        for (size_t i = 0; i < shown; ++i) std::fputs(("Wrote " + outputs.files()[i] + "\n").c_str(), stderr);
+        if (shown < outputs.files().size())
+            std::fputs(fmt::format("... and {} more files\n", outputs.files().size() - shown).c_str(), stderr);
+        std::fputs(fmt::format("{} frame{}, {:.1f} Mrays at {:.2f} Mray/s, {:.1f} s, {}\n", frames_, frames_ == 1 ? "" : "s",
+                               static_cast<double>(rays_) / 1e6, mraysPerSecond, seconds, formatBytes(peakResidentBytes()))
+                       .c_str(),
+                   stderr);
+    }
+
+private:
+    int64_t frames_ = 0;
+    uint64_t rays_ = 0, nonFinite_ = 0;
+    double traceMs_ = 0;
+    std::map<std::string, std::vector<double>> stages_;
+    std::vector<std::string> order_;
+};
+
+/// Runs frames and writes what is asked for.
+class Renderer {
+public:
+    Renderer(const RenderOptions& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop)
+        : options_(options), machine_(machine), log_(log), stop_(stop) {}
+
+    int render() {
+        const fs::path file = findScene(options_.scene.scene);
+        auto scene = openScene(file, options_.scene, log_, stop_);
+        Document document = makeDocument(scene, options_.scene);
+        const OutputChoice choice{0, options_.buffers, options_.half};
+        start(document, file, choice, {options_.scene.scene, scene->contentDigest});
+
+        const FrameRange& range = options_.frames;
+        const double fps = document.render().fps;
+        const int64_t first = std::max<int64_t>(range.begin - options_.warmUp, 0);
+        const bool timed = range.end - first > 1 || first > 0;
+        last_ = range.end - 1, first_ = first;
+        for (int64_t number = first; number < range.end; ++number) {
+            if (timed) document.setTime(static_cast<float>(static_cast<double>(number) / fps));
+            draw(document, number, number == first, number >= range.begin);
+        }
+        return finish();
+    }
+
+    int replay() {
+        const Replay replay = readReplay(options_.replay);
+        if (machine_.isa.empty()) useIsa(replay.isa);
+        const fs::path file = sceneOf(replay);
+        LoadOptions load;
+        load.stop = stop_;
+        load.sceneIndex = replay.start.value("scene.index", -1);
+        load.variant = replay.start.value("scene.variant", "");
+        auto scene = loadScene(file, log_, load);
+        if (scene->contentDigest != replay.scene.digest)
+            throwBadInput({"the scene changed since the image was made", file.string(), "content " + replay.scene.digest,
+                           scene->contentDigest});
+        Document document(scene);
+        const std::string where = options_.replay.string();
+        document.apply(replay.start, where);
+        start(document, file, OutputChoice::parse(replay.output, where), replay.scene);
+        first_ = replay.first, last_ = replay.last;
+        for (FrameNumber number = replay.first; number <= replay.last; ++number) {
+            if (const json* values = replay.valuesOf(number)) document.apply(*values, where);
+            draw(document, number, number == replay.first, number == replay.last);
+        }
+        return finish();
+    }
+
+private:
+    void start(const Document& document, const fs::path& file, const OutputChoice& choice, SceneReference reference) {
+        std::vector<std::string> names = options_.out;
+        const std::string instance = document.view(choice.view).module;
+        if (names.empty()) names.push_back(defaultOutput(file, instance));
+        buffers_ = BufferSelection::parse(choice.buffers, instance, "--buffers");
+        outputs_ = std::make_unique<RenderOutputs>(names, choice, document.render().fps);
+        states_ = StateLog(std::move(reference));
+        instance_ = instance;
+        const RenderSettings& render = document.render();
+        checkMemory(fmt::format("rendering {}x{}", render.width, render.height),
+                    uint64_t(400) * static_cast<uint64_t>(render.width) * static_cast<uint64_t>(render.height));
+        engine_.emplace(log_);
+        total_.restart();
+    }
+
+    void draw(const Document& document, FrameNumber number, bool cut, bool written) {
+        const bool last = number == last_;
+        FrameRequest request{document, number, cut, {}, {}};
+        if (written && outputs_->wantsLayers(last)) {
+            request.signals = buffers_.signals;
+            request.signals.add(Signal::Depth);
+            request.taps[instance_] = buffers_.taps;
+        }
+        const std::optional<FrameOutput> frame = drawWithProgress(request);
+        if (!frame) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
+        states_.record(*frame, std::make_shared<Document>(document));
+        summary_.add(*frame);
+        if (written) outputs_->write(*frame, document, states_, last);
+    }
+
+    std::optional<FrameOutput> drawWithProgress(const FrameRequest& request) {
+        const bool shown = !machine_.quiet && (options_.progress == Progress::Always ||
+                                               (options_.progress == Progress::Auto && stderrIsTerminal()));
+        const RenderSettings& render = request.document.render();
+        const double frameRays = static_cast<double>(render.width) * render.height * render.samplesPerPixel;
+        const double frames = static_cast<double>(last_ - first_ + 1);
+        ProgressLine line(shown, [&] {
+            const double part = std::min(static_cast<double>(engine_->tracedSoFar().cameraRays) / frameRays, 1.0);
+            const double fraction = (static_cast<double>(request.frame - first_) + part) / frames;
+            const double seconds = total_.elapsedMs() / 1000;
+            const double left = fraction > 0.01 ? seconds / fraction - seconds : 0;
+            return fmt::format("frame {} of {}..{}  {:3.0f}%  {} left", request.frame, first_, last_ + 1, 100 * fraction,
+                               fraction > 0.01 ? formatDuration(left) : "?");
+        });
+        return engine_->advance(request, stop_);
+    }
+
+    int finish() {
+        outputs_->finish();
+        summary_.print(*outputs_, machine_, log_, total_.elapsedMs() / 1000);
+        return 0;
+    }
+
+    /// Where the replayed scene is now: as given beside --replay, as it was called then, or beside the file.
+    fs::path sceneOf(const Replay& replay) const {
+        if (!options_.scene.scene.empty()) return findScene(options_.scene.scene);
+        const fs::path beside = options_.replay.parent_path() / replay.scene.name;
+        if (!fs::exists(replay.scene.name) && fs::exists(beside)) return beside;
+        return findScene(replay.scene.name);
+    }
+
+    void useIsa(const std::string& name) const {
+        const Isa isa = parseIsa(name);
+        if (isa <= detectIsa()) setIsa(isa);
+        else log_.warning(fmt::format("the image was made with instruction set {}, this machine has {}: last bits may differ",
+                                      name, isaName(detectIsa())));
+    }
+
+    const RenderOptions& options_;
+    const MachineOptions& machine_;
+    MessageLog& log_;
+    std::stop_token stop_;
+    std::optional<FrameEngine> engine_;  ///< made when the instruction set is known
+    std::unique_ptr<RenderOutputs> outputs_;
+    BufferSelection buffers_;
+    StateLog states_;
+    Summary summary_;
+    std::string instance_;
+    int64_t first_ = 0, last_ = 0;
+    Timer total_;
+};
+
+}  // namespace
+
+int runRender(const RenderOptions& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop) {
+    Renderer renderer(options, machine, log, stop);
+    return options.replay.empty() ? renderer.render() : renderer.replay();
+}
+
+}  // namespace lumi
