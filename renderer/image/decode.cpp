@@ -27,8 +27,9 @@ namespace {
 
 static_assert(STBI_MAX_DIMENSIONS == kMaxDecodedSide);
 
-/// Pixels a byte of any of these formats can stand for; beyond it the header lies.
-constexpr uint64_t kMaxPixelsPerByte = 2000;
+/// Pixels a byte of any of these formats can stand for (one-bit PNG under deflate's best ratio of 1032); beyond it the
+/// header lies.
+constexpr uint64_t kMaxPixelsPerByte = 8 * 1032;
 
 int lengthOf(std::span<const uint8_t> bytes, const std::string& name) {
     if (bytes.size() > INT32_MAX) throwBadInput({"image is too large", name, "at most 2 GiB", ""});

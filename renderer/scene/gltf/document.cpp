@@ -32,6 +32,10 @@ constexpr std::array kSupportedExtensions = {"EXT_mesh_gpu_instancing",
                                              "KHR_mesh_quantization",
                                              "KHR_texture_transform"};
 
+bool isSupported(const std::string& extension) {
+    return std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) != kSupportedExtensions.end();
+}
+
 std::string firstLine(const std::string& text) { return text.substr(0, text.find_first_of("\r\n")); }
 
 bool isBinary(std::span<const uint8_t> file) { return file.size() >= 4 && std::memcmp(file.data(), "glTF", 4) == 0; }
@@ -103,7 +107,8 @@ Document::Document(const std::filesystem::path& path, MessageLog& log, const Loa
     } catch (const std::exception& e) {
         throwBadInput({.what = "damaged glTF: " + firstLine(e.what()), .where = name_});
     }
-    checkExtensions();
+    for (const std::string& name : model_.extensionsUsed)
+        if (!isSupported(name)) warn("the extension \"" + name + "\" is not supported; what it adds is left out");
 }
 
 void Document::parse(std::span<const uint8_t> file) {
@@ -113,7 +118,9 @@ void Document::parse(std::span<const uint8_t> file) {
     if (!binary && lowerExtension(path_) == ".glb")
         throwBadInput({.what = "not a GLB file", .where = name_, .expected = "the magic bytes \"glTF\""});
     uint64_t bytes = 0;
-    for (const JsonSummary::Buffer& buffer : inspectJson(json, name_).buffers) {
+    const JsonSummary summary = inspectJson(json, name_);
+    checkRequiredExtensions(summary.requiredExtensions);
+    for (const JsonSummary::Buffer& buffer : summary.buffers) {
         if (buffer.external) externalBufferLengths_.push_back(buffer.byteLength);
         bytes += buffer.hasUri ? 0 : std::min<uint64_t>(buffer.byteLength, file.size());
     }
@@ -140,16 +147,11 @@ void Document::parse(std::span<const uint8_t> file) {
     }
 }
 
-void Document::checkExtensions() const {
-    const auto supported = [](const std::string& name) {
-        return std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), name) != kSupportedExtensions.end();
-    };
-    for (size_t i = 0; i < model_.extensionsRequired.size(); ++i)
-        if (!supported(model_.extensionsRequired[i]))
+void Document::checkRequiredExtensions(const std::vector<std::string>& names) const {
+    for (size_t i = 0; i < names.size(); ++i)
+        if (!isSupported(names[i]))
             fail("/extensionsRequired/" + std::to_string(i),
-                 "the file requires the extension \"" + model_.extensionsRequired[i] + "\", which is not supported");
-    for (const std::string& name : model_.extensionsUsed)
-        if (!supported(name)) warn("the extension \"" + name + "\" is not supported; what it adds is left out");
+                 "the file requires the extension \"" + names[i] + "\", which is not supported");
 }
 
 void Document::fail(const std::string& jsonPath, const std::string& what, const std::string& expected,

@@ -2,7 +2,6 @@
 #include <tiny_gltf.h>
 
 #include <filesystem>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -56,7 +55,7 @@ public:
 
 private:
     void parse(std::span<const uint8_t> file);
-    void checkExtensions() const;
+    void checkRequiredExtensions(const std::vector<std::string>& names) const;
     std::filesystem::path resolve(const std::string& uri) const;
 
     std::filesystem::path path_;

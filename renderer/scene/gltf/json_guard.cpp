@@ -25,6 +25,7 @@ public:
     }
     bool number_float(number_float_t, const string_t&) override { return true; }
     bool string(string_t& value) override {
+        if (depth_ == 2 && section_ == "extensionsRequired") summary.requiredExtensions.push_back(value);
         if (inBuffer() && key_ == "uri") {
             summary.buffers.back().hasUri = !value.empty();
             summary.buffers.back().external = !value.empty() && !value.starts_with("data:");

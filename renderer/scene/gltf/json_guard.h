@@ -13,7 +13,8 @@ struct JsonSummary {
         bool external = false;    ///< a file, not a data URI
         uint64_t byteLength = 0;
     };
-    std::vector<Buffer> buffers;  ///< in document order
+    std::vector<Buffer> buffers;                  ///< in document order
+    std::vector<std::string> requiredExtensions;  ///< "extensionsRequired"
 };
 
 /// Deepest nesting that is accepted: tinygltf recurses, and overflows its stack on hostile files.

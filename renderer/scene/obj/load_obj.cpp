@@ -1,0 +1,138 @@
+#include "scene/obj/load_obj.h"
+
+#include <tiny_obj_loader.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "scene/obj/obj_materials.h"
+#include "scene/obj/obj_mesh.h"
+
+namespace lumi {
+namespace {
+
+constexpr uint64_t kMaxObjBytes = uint64_t(4) << 30;
+/// What tinyobj holds for a byte of text while it parses, at most.
+constexpr uint64_t kBytesPerByte = 24;
+
+/// Finds .mtl files in the .obj's folder only.
+class FolderMaterials final : public tinyobj::MaterialReader {
+public:
+    FolderMaterials(std::filesystem::path folder, MessageLog& log, std::string where, uint64_t& digest)
+        : folder_(std::move(folder)), log_(log), where_(std::move(where)), digest_(digest) {}
+
+    bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
+                    std::map<std::string, int>* byName, std::string*, std::string*) override {
+        const std::filesystem::path relative = std::filesystem::path(name).lexically_normal();
+        if (relative.empty() || relative.is_absolute() || *relative.begin() == "..") {
+            log_.warning(where_ + ": the material file \"" + name + "\" leads out of the .obj's folder");
+            return true;
+        }
+        try {
+            const std::vector<uint8_t> bytes = readFile(folder_ / relative, uint64_t(1) << 28);
+            digest_ = digest64(bytes, digest_);
+            std::istringstream text(std::string(bytes.begin(), bytes.end()));
+            std::string warning, error;
+            tinyobj::LoadMtl(byName, materials, &text, &warning, &error);
+        } catch (const Error& e) {
+            log_.warning(where_ + ": " + e.what() + "; its materials are left out");
+        }
+        return true;
+    }
+
+private:
+    std::filesystem::path folder_;
+    MessageLog& log_;
+    std::string where_;
+    uint64_t& digest_;
+};
+
+struct ParsedObj {
+    tinyobj::attrib_t attributes;
+    std::vector<tinyobj::shape_t> shapes;
+    std::vector<tinyobj::material_t> materials;
+    uint64_t digest = 0;
+};
+
+ParsedObj parse(const std::filesystem::path& path, MessageLog& log) {
+    const std::string where = path.filename().string();
+    std::vector<uint8_t> bytes = readFile(path, kMaxObjBytes);
+    checkMemory("reading " + where, bytes.size() * kBytesPerByte);
+    ParsedObj parsed;
+    parsed.digest = digest64(bytes);
+    std::istringstream text(std::string(bytes.begin(), bytes.end()));
+    bytes = {};
+    FolderMaterials materials(path.parent_path(), log, where, parsed.digest);
+    std::string warning, error;
+    try {
+        const bool good = tinyobj::LoadObj(&parsed.attributes, &parsed.shapes, &parsed.materials, &warning, &error, &text,
+                                           &materials, /*triangulate=*/false, /*default_vcols_fallback=*/false);
+        if (!good)
+            throwBadInput({.what = "damaged OBJ: " + error.substr(0, error.find_first_of("\r\n")), .where = where});
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::Resources, {.what = "not enough memory to read the file", .where = where});
+    }
+    std::istringstream lines(warning);
+    for (std::string line; std::getline(lines, line);)
+        if (!line.empty()) log.warning(where + ": " + line);
+    return parsed;
+}
+
+}  // namespace
+
+Scene loadObj(const std::filesystem::path& path, MessageLog& log, const LoadOptions& options) {
+    const std::string where = path.filename().string();
+    const auto step = [&](float fraction, const char* what) {
+        if (options.stop.stop_requested())
+            throw Error(ErrorKind::Interrupted, {.what = "loading was stopped", .where = where});
+        if (options.progress) options.progress(fraction, what);
+    };
+    step(0, "Reading geometry");
+    const ParsedObj parsed = parse(path, log);
+    step(0.4f, "Decoding textures");
+    ObjImages images(path.parent_path(), log);
+    Scene scene;
+    scene.title = path.stem().string();
+    scene.path = path.string();
+    scene.materials = convertMaterials(parsed.materials, images, options.stop);
+
+    step(0.7f, "Building meshes");
+    const uint32_t fallback = static_cast<uint32_t>(scene.materials.size() - 1);
+    std::vector<std::shared_ptr<Mesh>> meshes(parsed.shapes.size());
+    parallelFor(static_cast<int64_t>(meshes.size()), [&](int64_t i) {
+        const size_t index = static_cast<size_t>(i);
+        auto mesh = std::make_shared<Mesh>(meshFromShape(parsed.attributes, parsed.shapes[index], fallback, where));
+        checkMesh(*mesh, where);
+        const auto needsTangents = [&](uint32_t m) { return bool(scene.materials[m].normalTexture); };
+        const bool any = std::any_of(mesh->triangleMaterial.begin(), mesh->triangleMaterial.end(), needsTangents) ||
+                         (mesh->triangleMaterial.empty() && needsTangents(mesh->material));
+        if (any && !mesh->uv[0].empty() && !mesh->normals.empty()) computeTangents(*mesh);
+        meshes[index] = std::move(mesh);
+    });
+    bool usesFallback = false;
+    for (size_t i = 0; i < meshes.size(); ++i) {
+        if (meshes[i]->triangles.empty()) continue;
+        Node node;
+        node.name = meshes[i]->name.empty() ? "shape-" + std::to_string(i) : meshes[i]->name;
+        Instance instance;
+        instance.name = node.name;
+        instance.node = static_cast<int>(scene.nodes.size());
+        instance.mesh = meshes[i];
+        const std::vector<uint32_t>& table = meshes[i]->triangleMaterial;
+        usesFallback |= table.empty() ? meshes[i]->material == fallback
+                                      : std::find(table.begin(), table.end(), fallback) != table.end();
+        scene.nodes.push_back(std::move(node));
+        scene.instances.push_back(std::move(instance));
+    }
+    if (!usesFallback && fallback > 0) scene.materials.pop_back();
+    const uint64_t parts[2] = {parsed.digest, images.digest()};
+    scene.contentDigest = digest({reinterpret_cast<const uint8_t*>(parts), sizeof(parts)});
+    step(1, "Loaded");
+    return scene;
+}
+
+}  // namespace lumi
