@@ -1,0 +1,139 @@
+// Damaged files: every loader either succeeds or says in one line, as an Error, what is wrong; it never crashes, never
+// takes long, and never lets another exception out. $LUMISCOPE_MUTATIONS sets the number of cases (default 1500).
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/memory.h"
+#include "image/exr.h"
+#include "image/hdr.h"
+#include "image/png.h"
+#include "robustness/mutate.h"
+#include "scene/load.h"
+#include "scene/posed_scene.h"
+
+namespace lumi {
+namespace {
+namespace fs = std::filesystem;
+
+int caseCount() {
+    const char* text = std::getenv("LUMISCOPE_MUTATIONS");
+    return text ? std::atoi(text) : 1500;
+}
+
+fs::path assets() {
+    const char* folder = std::getenv("LUMISCOPE_ASSETS");
+    return folder ? folder : LUMISCOPE_SOURCE_DIR "/../shared/assets";
+}
+
+/// A folder of its own for each test, gone afterwards.
+class Robustness : public ::testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("lumiscope-robustness-" + std::to_string(getpid()));
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    /// Loads `bytes` as a file of that name with everything a session does to a scene: load and pose.
+    void tryScene(const std::string& name, const std::string& bytes, uint64_t seed) {
+        const fs::path path = folder_ / name;
+        writeFileAtomically(path, std::string_view(bytes));
+        const auto start = std::chrono::steady_clock::now();
+        try {
+            MessageLog log;
+            const auto scene = loadScene(path, log);
+            poseScene(scene, {0.3f, 0.3f, 0.2f});
+            ++accepted_;
+        } catch (const Error& error) {
+            ++refused_;
+            const std::string text = error.what();
+            EXPECT_FALSE(text.empty()) << name << " seed " << seed;
+            EXPECT_EQ(text.find('\n'), std::string::npos) << name << " seed " << seed << ": " << text;
+            EXPECT_TRUE(error.kind() == ErrorKind::BadInput || error.kind() == ErrorKind::Resources)
+                << name << " seed " << seed << ": " << text;
+        } catch (const std::exception& other) {
+            ADD_FAILURE() << name << " seed " << seed << " let out: " << other.what();
+        }
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+        EXPECT_LT(took.count(), 10) << name << " seed " << seed;
+    }
+    void mutateScene(const std::string& name, const std::string& good, bool isText, uint64_t base) {
+        tryScene(name, good, 0);
+        ASSERT_EQ(accepted_, 1) << "the file is refused before it is damaged";
+        for (int i = 0; i < caseCount(); ++i) {
+            const uint64_t seed = base + static_cast<uint64_t>(i);
+            tryScene(name, Mutator(seed).mutate(good, isText), seed);
+        }
+        // Damage is found often, and not everything is damage.
+        EXPECT_GT(refused_, caseCount() / 20);
+        EXPECT_GT(accepted_, caseCount() / 100);
+    }
+    fs::path folder_;
+    int accepted_ = 0, refused_ = 0;
+};
+
+std::string assetBytes(const std::string& name) {
+    const std::vector<uint8_t> bytes = readFile(assets() / name);
+    return {bytes.begin(), bytes.end()};
+}
+
+#define REQUIRE_ASSETS() \
+    if (!fs::exists(assets())) GTEST_SKIP() << "the test assets " << assets() << " are not here"
+
+TEST_F(Robustness, SceneFiles) {
+    mutateScene("scene.json", readTextFile(fs::path(LUMISCOPE_SOURCE_DIR) / "scenes" / "cornell.json"), true, 1000000);
+}
+TEST_F(Robustness, ObjFiles) {
+    mutateScene("mesh.obj",
+                "# a cube's corner\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n"
+                "usemtl red\nf 1/1/1 2/2/1 3/3/1 4/1/1\nf 1 2 5\ns 1\no part\nf -1 -2 -3\n",
+                true, 2000000);
+}
+TEST_F(Robustness, EmbeddedGltf) {
+    REQUIRE_ASSETS();
+    mutateScene("skin.gltf", assetBytes("gltf/SimpleSkin/glTF-Embedded/SimpleSkin.gltf"), true, 3000000);
+}
+TEST_F(Robustness, SparseGltf) {
+    REQUIRE_ASSETS();
+    mutateScene("sparse.gltf", assetBytes("gltf/SimpleSparseAccessor/glTF-Embedded/SimpleSparseAccessor.gltf"), true,
+                4000000);
+}
+TEST_F(Robustness, BinaryGltf) {
+    REQUIRE_ASSETS();
+    mutateScene("box.glb", assetBytes("gltf/BoxAnimated/glTF-Binary/BoxAnimated.glb"), false, 5000000);
+}
+TEST_F(Robustness, RadianceSkies) {
+    std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n";
+    for (int i = 0; i < 32; ++i) hdr += std::string("\x40\x50\x60\x80", 4);
+    mutateScene("sky.hdr", hdr, false, 6000000);
+}
+TEST_F(Robustness, ExrSkies) {
+    Image image({16, 8}, 3);
+    image.fill(0.5f);
+    ExrLayers layers;
+    layers.add("", "RGB", image);
+    const std::vector<uint8_t> bytes = encodeExr(layers);
+    mutateScene("sky.exr", std::string(bytes.begin(), bytes.end()), false, 7000000);
+}
+TEST_F(Robustness, PngFiles) {
+    Image8 picture{{16, 8}, std::vector<uint8_t>(16 * 8 * 4, 77)};
+    const std::vector<uint8_t> good = encodePng(picture, {{kStateKey, "{}"}});
+    for (int i = 0; i < caseCount(); ++i) {
+        const std::string bytes = Mutator(8000000u + static_cast<uint64_t>(i)).mutate({good.begin(), good.end()}, false);
+        try {
+            decodePng(std::span(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()), "damaged.png");
+        } catch (const Error&) {
+            ++refused_;
+        }
+    }
+    EXPECT_GT(refused_, caseCount() / 20);
+}
+
+}  // namespace
+}  // namespace lumi
