@@ -41,10 +41,16 @@ struct PathVertex {
     Vec3 wi{0};
     Vec3 weight{0};          ///< f cos / pdf of the continuation, roulette included
     float pdf = 0;           ///< of wi per solid angle over all lobes; 0 for delta lobes
+    Vec3 diffuseShare{0};    ///< part of `weight` that the diffuse lobe has; where lobes overlap it is neither 0 nor 1
 };
 
-/// What an observer wants beyond the vertices themselves; asked once a frame.
+/// What an observer wants; asked once a frame. What nobody asks for is not computed.
 struct ObserverNeeds {
+    static constexpr int kAll = 1 << 30;
+    int vertexDepths = kAll;   ///< vertices at depths below this are reported; 0: only finished() is called
+    int albedoDepths = kAll;   ///< vertices below this depth carry albedo and specularAlbedo
+    int normalDepths = kAll;   ///< and objectNormal
+    int shareDepths = kAll;    ///< and diffuseShare
     bool blocker = false;  ///< shadow rays report what blocked them (a closest-hit ray instead of an any-hit one)
 };
 

@@ -1,0 +1,224 @@
+#include "trace/contract_check.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "math/statistics.h"
+
+namespace lumi {
+namespace {
+
+Vec3 colourAt(const Image& image, Pixel p) { return {image.at(0, p.x, p.y), image.at(1, p.x, p.y), image.at(2, p.x, p.y)}; }
+
+/// Collects one rule over the pixels of a frame.
+class Rule {
+public:
+    Rule(std::string rule, double limit, std::string unit = "") {
+        finding_.rule = std::move(rule);
+        finding_.limit = limit;
+        finding_.unit = std::move(unit);
+    }
+    /// `error` must be at most the limit; NaN breaks the rule.
+    void check(Pixel p, double error, double shown) {
+        ++finding_.checked;
+        if (error <= finding_.limit) return;
+        ++finding_.violations;
+        if (finding_.violations > 1 && !(error > worst_)) return;
+        worst_ = error;
+        finding_.worst = p;
+        finding_.value = shown;
+    }
+    void check(Pixel p, double error) { check(p, error, error); }
+    ContractFinding take() { return std::move(finding_); }
+
+private:
+    ContractFinding finding_;
+    double worst_ = 0;
+};
+
+/// A frame's signals by pixel, with what several rules ask.
+struct CheckedFrame {
+    const Signals& signals;
+    const FrameSampling& sampling;
+    const Tracer& tracer;
+
+    bool sky(Pixel p) const { return signals.ids(Signal::ObjectId).at(0, p.x, p.y) == 0; }
+    SurfacePoint point(Pixel p) const {
+        const IdImage& s = signals.ids(Signal::Surface);
+        SurfacePoint point;
+        point.instance = s.at(0, p.x, p.y), point.primitive = s.at(1, p.x, p.y);
+        point.barycentrics = {std::bit_cast<float>(s.at(2, p.x, p.y)), std::bit_cast<float>(s.at(3, p.x, p.y))};
+        return point;
+    }
+    template <class F>
+    void eachPixel(F body) const {
+        for (int y = 0; y < signals.extent().height; ++y)
+            for (int x = 0; x < signals.extent().width; ++x) body(Pixel{x, y});
+    }
+    template <class F>
+    void eachSurface(F body) const {
+        eachPixel([&](Pixel p) {
+            if (!sky(p)) body(p);
+        });
+    }
+};
+
+ContractFinding finiteValues(const CheckedFrame& frame) {
+    Rule rule("every value is finite (depth of the sky apart)", 0);
+    frame.eachPixel([&](Pixel p) {
+        int broken = 0;
+        for (int s = 0; s < kSignalCount; ++s) {
+            const auto signal = static_cast<Signal>(s);
+            if (signalInfo(signal).isId || !frame.signals.available().has(signal)) continue;
+            if (signal == Signal::Depth && frame.sky(p)) continue;
+            const Image& image = frame.signals[signal];
+            for (int c = 0; c < image.channels(); ++c) broken += !std::isfinite(image.at(c, p.x, p.y));
+        }
+        rule.check(p, broken);
+    });
+    return rule.take();
+}
+
+ContractFinding unitNormals(const CheckedFrame& frame) {
+    Rule rule("normals are unit vectors", 1e-3);
+    for (const Signal signal : {Signal::Normal, Signal::GeometricNormal, Signal::ObjectNormal})
+        frame.eachSurface([&](Pixel p) {
+            const double length = glm::length(colourAt(frame.signals[signal], p));
+            rule.check(p, std::abs(length - 1), length);
+        });
+    return rule.take();
+}
+
+ContractFinding range01(const CheckedFrame& frame, Signal signal) {
+    Rule rule(fmt::format("{} lies in [0,1]", signalInfo(signal).name), 1e-5);
+    frame.eachPixel([&](Pixel p) {
+        const Image& image = frame.signals[signal];
+        for (int c = 0; c < image.channels(); ++c) {
+            const double v = image.at(c, p.x, p.y);
+            rule.check(p, std::max(-v, v - 1), v);
+        }
+    });
+    return rule.take();
+}
+
+ContractFinding lightingIdentity(const CheckedFrame& frame) {
+    Rule rule("albedo x illumination + emission = radiance, relative to it", 1e-3);
+    const Signals& s = frame.signals;
+    frame.eachPixel([&](Pixel p) {
+        const Vec3 sum = colourAt(s[Signal::Emission], p) +
+                         colourAt(s[Signal::Albedo], p) *
+                             (colourAt(s[Signal::DirectDiffuse], p) + colourAt(s[Signal::IndirectDiffuse], p)) +
+                         colourAt(s[Signal::SpecularAlbedo], p) *
+                             (colourAt(s[Signal::DirectSpecular], p) + colourAt(s[Signal::IndirectSpecular], p));
+        const Vec3 noisy = colourAt(s[Signal::Noisy], p);
+        rule.check(p, maxComponent(glm::abs(sum - noisy)) / (maxComponent(glm::abs(noisy)) + 1e-4));
+    });
+    return rule.take();
+}
+
+ContractFinding linearDepth(const CheckedFrame& frame) {
+    Rule rule("depth is the linear view depth of the position, relative to it", 1e-3);
+    frame.eachSurface([&](Pixel p) {
+        const double depth = frame.signals[Signal::Depth].at(0, p.x, p.y);
+        const double expected = frame.sampling.camera.project(colourAt(frame.signals[Signal::Position], p)).z;
+        const double inverse = frame.signals[Signal::InverseDepth].at(0, p.x, p.y);
+        rule.check(p, std::max(std::abs(depth - expected) / std::abs(expected), std::abs(inverse * depth - 1)), depth);
+    });
+    return rule.take();
+}
+
+ContractFinding motionVectors(const CheckedFrame& frame) {
+    Rule rule("motion leads to the surface's previous pixel", 0.01, "px");
+    const FrameSampling& s = frame.sampling;
+    frame.eachSurface([&](Pixel p) {
+        const SurfacePoint point = frame.point(p);
+        const Vec3 now = s.camera.project(frame.tracer.position(point));
+        const Vec3 before = s.previousCamera.project(frame.tracer.previousPosition(point));
+        if (!(before.z > 0) && s.previousCamera.projection == Projection::Perspective) return;
+        const Vec3 motion = colourAt(frame.signals[Signal::Motion], p);
+        const double error = std::hypot(before.x - now.x - motion.x, before.y - now.y - motion.y);
+        // Far off the image a float holds no hundredth of a pixel.
+        rule.check(p, error / std::max(1.0, std::hypot(motion.x, motion.y) * 1e-3), error);
+    });
+    return rule.take();
+}
+
+ContractFinding jitterDistribution(const CheckedFrame& frame) {
+    constexpr int kCells = 8;
+    std::array<double, kCells * kCells> observed{};
+    double count = 0, spread = 0;
+    Vec2 first(-1);
+    frame.eachSurface([&](Pixel p) {
+        const Vec3 at = frame.sampling.camera.project(colourAt(frame.signals[Signal::Position], p));
+        const Vec2 offset(at.x - static_cast<float>(p.x), at.y - static_cast<float>(p.y));
+        const auto cell = [&](float o) { return std::clamp(static_cast<int>(o * kCells), 0, kCells - 1); };
+        observed[static_cast<size_t>(cell(offset.y) * kCells + cell(offset.x))] += 1;
+        if (count++ == 0) first = offset;
+        spread = std::max<double>(spread, glm::distance(offset, first));
+    });
+    const bool pinhole = frame.sampling.camera.aperture == 0;
+    if (frame.sampling.jitter != Jitter::PerPixel || !pinhole || count < 64 * 5) {
+        Rule rule("all pixels have the frame's one sub-pixel offset", 0.02, "px");
+        if (frame.sampling.jitter != Jitter::PerPixel && pinhole && count > 0) rule.check({0, 0}, spread);
+        return rule.take();
+    }
+    const std::vector<double> expected(observed.size(), count / static_cast<double>(observed.size()));
+    Rule rule("sub-pixel offsets are uniform (1 - p-value of a chi-square test)", 1 - 1e-6);
+    rule.check({0, 0}, 1 - chiSquareTest(observed, expected));
+    return rule.take();
+}
+
+ContractFinding knownIds(const CheckedFrame& frame) {
+    Rule rule("object and material ids exist", 0);
+    const Scene& scene = *frame.tracer.scene().scene;
+    frame.eachSurface([&](Pixel p) {
+        const uint32_t object = frame.signals.ids(Signal::ObjectId).at(0, p.x, p.y);
+        const uint32_t material = frame.signals.ids(Signal::MaterialId).at(0, p.x, p.y);
+        const bool good = object <= scene.instances.size() && material >= 1 && material <= scene.materials.size();
+        rule.check(p, good ? 0 : 1, object);
+    });
+    return rule.take();
+}
+
+ContractFinding emptySky(const CheckedFrame& frame) {
+    Rule rule("the sky has infinite depth, no normal and no position", 0);
+    frame.eachPixel([&](Pixel p) {
+        const float depth = frame.signals[Signal::Depth].at(0, p.x, p.y);
+        const bool empty = depth == kInfinity && isBlack(colourAt(frame.signals[Signal::Normal], p)) &&
+                           isBlack(colourAt(frame.signals[Signal::Position], p)) &&
+                           frame.signals[Signal::InverseDepth].at(0, p.x, p.y) == 0;
+        rule.check(p, frame.sky(p) == empty ? 0 : 1, depth);
+    });
+    return rule.take();
+}
+
+}  // namespace
+
+std::string ContractFinding::text() const {
+    if (holds()) return fmt::format("{}: holds in {} pixels", rule, checked);
+    return fmt::format("{}: broken in {} of {} pixels; worst at ({}, {}): {:.4g}{}{}, allowed {:.4g}", rule, violations,
+                       checked, worst.x, worst.y, value, unit.empty() ? "" : " ", unit, limit);
+}
+
+SignalSet contractSignals() { return SignalSet::all(); }
+
+std::vector<ContractFinding> checkSignals(const Signals& signals, const FrameSampling& sampling, const Tracer& tracer) {
+    const CheckedFrame frame{signals, sampling, tracer};
+    return {finiteValues(frame),
+            unitNormals(frame),
+            range01(frame, Signal::Albedo),
+            range01(frame, Signal::SpecularAlbedo),
+            range01(frame, Signal::Roughness),
+            range01(frame, Signal::Visibility),
+            lightingIdentity(frame),
+            linearDepth(frame),
+            motionVectors(frame),
+            jitterDistribution(frame),
+            knownIds(frame),
+            emptySky(frame)};
+}
+
+}  // namespace lumi

@@ -1,0 +1,69 @@
+#pragma once
+#include <embree3/rtcore.h>
+
+#include <memory>
+#include <vector>
+
+#include "scene/posed_scene.h"
+
+namespace lumi {
+
+/// The Embree side of a posed scene. The top-level scene's geometry ids are instance indices:
+///   rigid meshes that are placed once and never move: world-space triangles of the top level;
+///   meshes that are shared or move: Embree instances of a scene a mesh, built once;
+///   deforming meshes: Embree instances of a scene of their own, rebuilt for each pose;
+///   light bodies (rectangle, disk, sphere): exact geometry, in a scene of their own if they move.
+/// Scenes are built robust (no leaks at shared edges) at medium quality. Rebuilding rather than refitting keeps a frame
+/// independent of the frames before it.
+///
+/// Alpha: filter functions reject hits on masked texels, and on blended ones with probability 1 - alpha by a hash of the
+/// ray's id, the instance and the primitive.
+class EmbreeScene {
+public:
+    EmbreeScene();
+    ~EmbreeScene();
+    EmbreeScene(const EmbreeScene&) = delete;
+    EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+    /// Builds what `posed` needs and keeps what did not change since the last call. `posed` must outlive the tracing.
+    /// Throws Error(Resources) if Embree runs out of memory or past the limit; the scene is empty then.
+    void bind(const PosedScene& posed);
+
+    RTCScene handle() const { return top_; }
+    /// World-space vertices of an instance that was attached as triangles; null for all others.
+    const Vec3* worldPositions(uint32_t instance) const;
+    /// Widest packet the device traces natively: 16, 8, 4 or 1.
+    int packetWidth() const { return packetWidth_; }
+    size_t byteCount() const;
+
+private:
+    enum class Mode : uint8_t { None, Direct, Instanced, Deforming, Body, MovingBody };
+    struct Plan;
+    struct Attachment;
+    struct MeshScene;
+    struct Monitor;
+
+    void clear();
+    std::vector<Plan> makePlans(const PosedScene& posed) const;
+    void rebuild(const PosedScene& posed, std::vector<Plan> plans);
+    bool update(const PosedScene& posed, std::vector<Plan> plans);
+    void buildScene(RTCScene scene) const;
+    RTCScene newScene() const;
+    RTCGeometry newTriangles(const Vec3* positions, size_t vertexCount, const Mesh& mesh, const Mat4* transform,
+                             bool filtered) const;
+    RTCGeometry newBody(const Plan& plan) const;
+    void makeAttachment(const PosedScene& posed, uint32_t index);
+    void throwIfFailed(const char* step) const;
+    static void filter(const RTCFilterFunctionNArguments* arguments);
+
+    RTCDevice device_ = nullptr;
+    RTCScene top_ = nullptr;
+    int packetWidth_ = 1;
+    const PosedScene* posed_ = nullptr;
+    std::unique_ptr<Monitor> monitor_;
+    std::vector<Plan> plans_;
+    std::vector<Attachment> attachments_;
+    std::vector<MeshScene> meshScenes_;
+};
+
+}  // namespace lumi

@@ -1,0 +1,165 @@
+#include "trace/environment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "math/warp.h"
+
+namespace lumi {
+namespace {
+
+constexpr int kMostColumns = 2048, kMostRows = 1024;
+
+/// Index i of the interval of an ascending table (count + 1 entries from 0 to 1) that holds u, never an empty one.
+int findInterval(const float* cdf, int count, float u) {
+    const int i = static_cast<int>(std::upper_bound(cdf, cdf + count + 1, u) - cdf) - 1;
+    int interval = std::clamp(i, 0, count - 1);
+    while (interval > 0 && cdf[interval + 1] <= cdf[interval]) --interval;
+    return interval;
+}
+
+/// Running sums of `values` as a table from 0 to 1; a row without weight becomes uniform. Returns the sum.
+double makeCdf(const float* values, int count, float* cdf) {
+    double sum = 0;
+    for (int i = 0; i < count; ++i) sum += values[i];
+    double running = 0;
+    cdf[0] = 0;
+    for (int i = 0; i < count; ++i) {
+        running += values[i];
+        cdf[i + 1] = sum > 0 ? static_cast<float>(running / sum) : static_cast<float>(i + 1) / static_cast<float>(count);
+    }
+    cdf[count] = 1;
+    return sum;
+}
+
+float safeLuminance(const Image& image, int x, int y) {
+    const float value = luminance(Vec3(image.at(0, x, y), image.at(1, x, y), image.at(2, x, y)));
+    return value > 0 && std::isfinite(value) ? value : 0;
+}
+
+}  // namespace
+
+void EnvironmentLight::build(const Environment& environment) {
+    const bool sameImage = environment.image == image_ && (image_ == nullptr || columns_ > 0);
+    image_ = environment.image;
+    constant_ = environment.constant * environment.scale;
+    scale_ = environment.scale;
+    cos_ = std::cos(radians(environment.rotateDeg));
+    sin_ = std::sin(radians(environment.rotateDeg));
+    if (image_ && (image_->empty() || image_->channels() < 3)) image_ = nullptr;
+    if (!image_) {
+        rowCdf_ = {}, columnCdf_ = {};
+        columns_ = rows_ = 0;
+    } else if (!sameImage) {
+        buildTables(*image_);
+    }
+    meanLuminance_ = image_ ? imageMeanLuminance_ * scale_ : luminance(constant_);
+    black_ = !(meanLuminance_ > 0) || !std::isfinite(meanLuminance_);
+}
+
+void EnvironmentLight::buildTables(const Image& image) {
+    const int width = image.width(), height = image.height();
+    columns_ = std::min(width, kMostColumns);
+    rows_ = std::min(height, kMostRows);
+    std::vector<float> weights(static_cast<size_t>(columns_) * static_cast<size_t>(rows_));
+    std::vector<double> rowLuminance(static_cast<size_t>(rows_));
+    parallelRanges(rows_, 16, [&](int64_t begin, int64_t end) {
+        for (int row = static_cast<int>(begin); row < end; ++row) {
+            const int y0 = static_cast<int>(int64_t(row) * height / rows_);
+            const int y1 = std::max(y0 + 1, static_cast<int>(int64_t(row + 1) * height / rows_));
+            const float sine = std::sin(kPi * (static_cast<float>(row) + 0.5f) / static_cast<float>(rows_));
+            double sum = 0;
+            for (int column = 0; column < columns_; ++column) {
+                const int x0 = static_cast<int>(int64_t(column) * width / columns_);
+                const int x1 = std::max(x0 + 1, static_cast<int>(int64_t(column + 1) * width / columns_));
+                // The cell's own texels, and with a small weight their neighbours, which interpolation mixes in.
+                double own = 0, around = 0;
+                for (int y = y0 - 1; y <= y1; ++y)
+                    for (int x = x0 - 1; x <= x1; ++x) {
+                        const double value = safeLuminance(image, (x + width) % width, std::clamp(y, 0, height - 1));
+                        const bool inside = y >= y0 && y < y1 && x >= x0 && x < x1;
+                        (inside ? own : around) += value;
+                    }
+                const int count = (y1 - y0) * (x1 - x0);
+                const int border = (y1 - y0 + 2) * (x1 - x0 + 2) - count;
+                sum += own / count;
+                weights[static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column)] =
+                    sine * static_cast<float>(0.75 * own / count + 0.25 * around / border);
+            }
+            rowLuminance[static_cast<size_t>(row)] = sum * sine;
+        }
+    });
+
+    rowCdf_.assign(static_cast<size_t>(rows_) + 1, 0);
+    columnCdf_.assign(static_cast<size_t>(rows_) * static_cast<size_t>(columns_ + 1), 0);
+    std::vector<float> rowWeights(static_cast<size_t>(rows_));
+    double total = 0, sines = 0;
+    for (int row = 0; row < rows_; ++row) {
+        const auto r = static_cast<size_t>(row);
+        rowWeights[r] = static_cast<float>(makeCdf(&weights[r * static_cast<size_t>(columns_)], columns_,
+                                                   &columnCdf_[r * static_cast<size_t>(columns_ + 1)]));
+        total += rowLuminance[r];
+        sines += std::sin(kPi * (row + 0.5) / rows_) * columns_;
+    }
+    makeCdf(rowWeights.data(), rows_, rowCdf_.data());
+    imageMeanLuminance_ = static_cast<float>(total / sines);
+}
+
+Vec3 EnvironmentLight::radiance(const Vec3& direction) const {
+    if (!image_) return constant_;
+    const Image& image = *image_;
+    const int width = image.width(), height = image.height();
+    const Vec2 uv = latLongFromDirection(toImage(direction));
+    const float fx = uv.x * static_cast<float>(width) - 0.5f, fy = uv.y * static_cast<float>(height) - 0.5f;
+    const float floorX = std::floor(fx), floorY = std::floor(fy);
+    const float tx = fx - floorX, ty = fy - floorY;
+    const int x0 = (static_cast<int>(floorX) + width) % width, x1 = x0 + 1 < width ? x0 + 1 : 0;
+    const int y0 = std::clamp(static_cast<int>(floorY), 0, height - 1), y1 = std::clamp(static_cast<int>(floorY) + 1, 0, height - 1);
+    Vec3 result;
+    for (int c = 0; c < 3; ++c) {
+        const auto plane = image.plane(c);
+        const float top = plane.at(x0, y0) * (1 - tx) + plane.at(x1, y0) * tx;
+        const float bottom = plane.at(x0, y1) * (1 - tx) + plane.at(x1, y1) * tx;
+        result[c] = top * (1 - ty) + bottom * ty;
+    }
+    return result * scale_;
+}
+
+float EnvironmentLight::density(int column, int row) const {
+    const float* columnCdf = &columnCdf_[static_cast<size_t>(row) * static_cast<size_t>(columns_ + 1)];
+    return (rowCdf_[static_cast<size_t>(row) + 1] - rowCdf_[static_cast<size_t>(row)]) *
+           (columnCdf[column + 1] - columnCdf[column]) * static_cast<float>(rows_) * static_cast<float>(columns_);
+}
+
+Vec3 EnvironmentLight::sample(Vec2 u, float& pdf) const {
+    if (!image_) {
+        pdf = pdfSphere();
+        return sampleSphere(u);
+    }
+    const int row = findInterval(rowCdf_.data(), rows_, u.y);
+    const float* columnCdf = &columnCdf_[static_cast<size_t>(row) * static_cast<size_t>(columns_ + 1)];
+    const int column = findInterval(columnCdf, columns_, u.x);
+    const auto within = [](const float* cdf, int i, float value) {
+        const float size = cdf[i + 1] - cdf[i];
+        return size > 0 ? std::clamp((value - cdf[i]) / size, 0.0f, 0x1.fffffep-1f) : 0.5f;
+    };
+    const Vec2 uv((static_cast<float>(column) + within(columnCdf, column, u.x)) / static_cast<float>(columns_),
+                  (static_cast<float>(row) + within(rowCdf_.data(), row, u.y)) / static_cast<float>(rows_));
+    const float sine = std::sin(uv.y * kPi);
+    pdf = sine > 0 ? density(column, row) / (2 * kPi * kPi * sine) : 0;
+    return toWorld(directionFromLatLong(uv));
+}
+
+float EnvironmentLight::pdf(const Vec3& direction) const {
+    if (!image_) return pdfSphere();
+    const Vec3 d = toImage(direction);
+    const Vec2 uv = latLongFromDirection(d);
+    const float sine = std::sqrt(std::max(0.0f, 1 - d.y * d.y));
+    if (!(sine > 0)) return 0;
+    const int column = std::clamp(static_cast<int>(uv.x * static_cast<float>(columns_)), 0, columns_ - 1);
+    const int row = std::clamp(static_cast<int>(uv.y * static_cast<float>(rows_)), 0, rows_ - 1);
+    return density(column, row) / (2 * kPi * kPi * sine);
+}
+
+}  // namespace lumi

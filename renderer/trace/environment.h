@@ -1,0 +1,43 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "scene/light.h"
+
+namespace lumi {
+
+/// Light from infinitely far, ready to be looked up and sampled: a constant, or an equirectangular image that is
+/// interpolated bilinearly and sampled by rows and columns of a piecewise-constant density [Pharr 2016, section 14.2].
+/// The density of a cell counts the texels around it, so that every direction with light can be drawn.
+class EnvironmentLight {
+public:
+    /// Keeps the tables if the image is the one of the last build.
+    void build(const Environment& environment);
+
+    bool black() const { return black_; }
+    /// Radiance from unit world direction `direction`.
+    Vec3 radiance(const Vec3& direction) const;
+    /// A direction with light and its density per solid angle.
+    Vec3 sample(Vec2 u, float& pdf) const;
+    float pdf(const Vec3& direction) const;
+    /// Mean over the sphere of the luminance.
+    float meanLuminance() const { return meanLuminance_; }
+    size_t byteCount() const { return (rowCdf_.size() + columnCdf_.size()) * sizeof(float); }
+
+private:
+    void buildTables(const Image& image);
+    Vec3 toImage(const Vec3& world) const { return {cos_ * world.x - sin_ * world.z, world.y, sin_ * world.x + cos_ * world.z}; }
+    Vec3 toWorld(const Vec3& d) const { return {cos_ * d.x + sin_ * d.z, d.y, -sin_ * d.x + cos_ * d.z}; }
+    float density(int column, int row) const;  ///< per unit square of the image
+
+    std::shared_ptr<const Image> image_;
+    Vec3 constant_{0};
+    float scale_ = 1, cos_ = 1, sin_ = 0;
+    bool black_ = true;
+    float imageMeanLuminance_ = 0, meanLuminance_ = 0;
+    int columns_ = 0, rows_ = 0;
+    std::vector<float> rowCdf_;     ///< rows_ + 1, ends at 1
+    std::vector<float> columnCdf_;  ///< rows_ times columns_ + 1, each row ends at 1
+};
+
+}  // namespace lumi

@@ -1,0 +1,372 @@
+#include "trace/integrator.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "math/hash.h"
+
+namespace lumi {
+namespace {
+
+/// Growth of a path's footprint by scattering, metres a metre; small enough to keep texture averages local.
+constexpr float kDiffuseSpread = 0.1f, kSpecularSpread = 0.25f;
+
+ObserverNeeds joined(std::span<PathObserver* const> observers) {
+    ObserverNeeds all{0, 0, 0, 0, false};
+    for (const PathObserver* observer : observers) {
+        const ObserverNeeds needs = observer->needs();
+        all.vertexDepths = std::max(all.vertexDepths, needs.vertexDepths);
+        all.albedoDepths = std::max(all.albedoDepths, needs.albedoDepths);
+        all.normalDepths = std::max(all.normalDepths, needs.normalDepths);
+        all.shareDepths = std::max(all.shareDepths, needs.shareDepths);
+        all.blocker |= needs.blocker;
+    }
+    return all;
+}
+
+Vec3 transmittance(const Vec3& absorption, float distance) {
+    return isBlack(absorption) ? Vec3(1) : glm::exp(-absorption * distance);
+}
+
+}  // namespace
+
+Integrator::Integrator(const TraceScene& scene, const PathSettings& settings, uint32_t seed,
+                       std::span<PathObserver* const> observers)
+    : scene_(scene), settings_(settings), seed_(seed), observers_(observers), needs_(joined(observers)) {
+    usesLightSamples_ = !scene.lights.empty() &&
+                        (settings.strategy != DirectStrategy::Bsdf || scene.lights.hasDelta());
+}
+
+float Integrator::misWeight(float pdf, float otherPdf) const {
+    const float a = pdf * pdf, b = otherPdf * otherPdf;
+    return std::isinf(a) ? 1 : a / (a + b);
+}
+
+Vec3 Integrator::limited(const PathState& path, const Vec3& radiance, int depth) const {
+    if (!settings_.clamp || depth == 0) return radiance;
+    const float largest = maxComponent(path.throughput * radiance);
+    return largest > settings_.clampRadiance ? radiance * (settings_.clampRadiance / largest) : radiance;
+}
+
+void Integrator::add(PathBatch& batch, PathState& path, const Vec3& contribution) const {
+    if (isFinite(contribution)) path.radiance += contribution;
+    else ++batch.nonFinite;
+}
+
+bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::span<const SurfacePoint> firstPoints,
+                     std::span<Vec3> radiance, bool coherent, TraceCounts& counts, const std::stop_token& stop) const {
+    assert(starts.size() <= PathBatch::kMost);
+    const auto count = static_cast<uint32_t>(starts.size());
+    batch.paths.resize(count);
+    batch.active.resize(count);
+    batch.nonFinite = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        const PathStart& start = starts[i];
+        PathState& path = batch.paths[i];
+        path = PathState();
+        path.ray = {start.ray.origin, start.ray.tmin, start.ray.direction, start.ray.tmax, start.ray.time, 0};
+        path.cone = start.cone;
+        path.scatterPosition = start.ray.origin;
+        path.stream = SampleStream(settings_.sampler, settings_.haltonLoop, seed_, start.key);
+        path.hash = hashCombine(hashCombine(start.key.x, start.key.y), start.key.sample, seed_);
+        path.slot = start.slot, path.sample = start.key.sample;
+        batch.active[i] = i;
+    }
+    for (int depth = 0; !batch.active.empty(); ++depth) {
+        if (stop.stop_requested()) return false;
+        const bool given = depth == 0 && !firstPoints.empty();
+        if (!given) findHits(batch, depth, coherent, counts);
+        else batch.hits.assign(count, RawHit());
+        const bool wantsVertices = depth < needs_.vertexDepths;
+        if (wantsVertices) batch.vertices.assign(batch.active.size(), PathVertex()), batch.vertexOf.resize(count);
+        batch.pending.clear();
+        batch.shadowRays.clear();
+        for (uint32_t row = 0; row < batch.active.size(); ++row) {
+            if (wantsVertices) batch.vertexOf[batch.active[row]] = row;
+            shade(batch, row, depth, given ? firstPoints : std::span<const SurfacePoint>());
+        }
+        traceShadows(batch, depth, coherent, counts);
+        if (wantsVertices) report(batch, depth);
+        std::erase_if(batch.active, [&](uint32_t i) { return !batch.paths[i].alive; });
+    }
+    counts.nonFinite += batch.nonFinite;
+    if (!radiance.empty())
+        for (uint32_t i = 0; i < count; ++i) radiance[i] = batch.paths[i].radiance;
+    if (!observers_.empty()) {
+        batch.slots.resize(count), batch.samples.resize(count), batch.radiance.resize(count);
+        for (uint32_t i = 0; i < count; ++i) {
+            const PathState& path = batch.paths[i];
+            batch.slots[i] = path.slot, batch.samples[i] = path.sample, batch.radiance[i] = path.radiance;
+        }
+        for (PathObserver* observer : observers_) observer->finished(batch.slots, batch.samples, batch.radiance);
+    }
+    return true;
+}
+
+void Integrator::findHits(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const {
+    batch.rays.resize(batch.active.size());
+    batch.hits.resize(batch.active.size());
+    for (size_t row = 0; row < batch.active.size(); ++row) {
+        const PathState& path = batch.paths[batch.active[row]];
+        batch.rays[row] = path.ray;
+        batch.rays[row].id = pcgHash(path.hash + static_cast<uint32_t>(2 * depth));
+    }
+    const bool packets = coherent && depth == 0;
+    intersectRays(scene_.embree, batch.rays, batch.hits, packets ? Coherence::Coherent : Coherence::Incoherent);
+    (depth == 0 ? counts.cameraRays : counts.bounceRays) += batch.rays.size();
+}
+
+void Integrator::shade(PathBatch& batch, uint32_t row, int depth, std::span<const SurfacePoint> firstPoints) const {
+    const uint32_t index = batch.active[row];
+    PathState& path = batch.paths[index];
+    PathVertex* vertex = depth < needs_.vertexDepths ? &batch.vertices[row] : nullptr;
+    path.alive = false;
+
+    // Where the path arrived.
+    const Vec3 wo = -path.ray.direction;
+    const RawHit& hit = batch.hits[row];
+    SurfacePoint point;
+    float distance = 0;
+    if (!firstPoints.empty()) {
+        point = firstPoints[index];
+        if (!point.valid()) return;
+    } else {
+        if (!hit.valid()) return shadeMiss(path, depth, vertex, batch);
+        distance = hit.distance;
+        point = surfacePoint(scene_.tables, hit, path.ray.origin + path.ray.direction * distance, path.ray.time);
+    }
+    path.cone.width += path.cone.spread * distance;
+    path.throughput *= transmittance(path.absorption, distance);
+    // The last surface only shines.
+    const bool last = depth >= settings_.maxDepth;
+    const InstanceRecord& instance = scene_.tables.instances[point.instance];
+    if (last && !vertex && instance.body < 0 &&
+        !scene_.tables.materials[instance.materialOf(point.primitive)].emits)
+        return;
+
+    Surface surface = evaluateSurface(scene_.tables, point, wo, path.cone.width);
+    if (settings_.regularize && path.diffuseBefore)
+        surface.inputs.roughness = std::max(surface.inputs.roughness, settings_.regularizeRoughness);
+    if (vertex) {
+        describeVertex(path, surface, wo, depth, *vertex);
+        vertex->distance = distance;
+    }
+    if (!isBlack(surface.emitted)) addEmission(path, surface, depth, vertex, batch);
+    if (last || surface.body >= 0) return;
+
+    const Frame frame(surface.normal);
+    Vec3 local = frame.toLocal(wo);
+    local.z = std::max(local.z, 1e-5f);
+    const Bsdf bsdf(surface.inputs, local);
+    if (vertex && depth < needs_.albedoDepths) {
+        vertex->albedo = bsdf.albedo(Lobe::Diffuse);
+        vertex->specularAlbedo = bsdf.specularAlbedo();
+    }
+    if (usesLightSamples_ && !bsdf.isDelta()) sampleLight(batch, index, surface, frame, bsdf, depth, vertex);
+    path.alive = continuePath(path, surface, frame, bsdf, wo, depth, vertex);
+}
+
+void Integrator::shadeMiss(PathState& path, int depth, PathVertex* vertex, PathBatch& batch) const {
+    const bool certain = depth == 0 || path.scatterPdf <= 0 || settings_.strategy == DirectStrategy::Bsdf;
+    const Vec3 radiance = scene_.lights.escaped(path.ray.direction, depth == 0, [&](float lightPdf) {
+        if (certain || lightPdf <= 0) return 1.0f;
+        return settings_.strategy == DirectStrategy::Light ? 0.0f : misWeight(path.scatterPdf, lightPdf);
+    });
+    const Vec3 emitted = isBlack(radiance) ? radiance : limited(path, radiance, depth);
+    add(batch, path, path.throughput * emitted);
+    if (!vertex) return;
+    vertex->wo = -path.ray.direction;
+    vertex->distance = kInfinity;
+    vertex->throughput = path.throughput;
+    vertex->cone = path.cone;
+    vertex->emitted = isFinite(path.throughput * emitted) ? emitted : Vec3(0);
+}
+
+void Integrator::addEmission(PathState& path, const Surface& surface, int depth, PathVertex* vertex,
+                             PathBatch& batch) const {
+    float weight = 1;
+    if (depth > 0 && path.scatterPdf > 0 && settings_.strategy != DirectStrategy::Bsdf) {
+        const Vec3& direction = path.ray.direction;
+        const float lightPdf =
+            surface.body >= 0
+                ? scene_.lights.pdfBody(surface.body, path.scatterPosition, direction, surface.position)
+                : scene_.lights.pdfTriangle(surface.point.instance, surface.point.primitive, path.scatterPosition,
+                                            direction, surface.position, surface.outwardNormal);
+        if (lightPdf > 0)
+            weight = settings_.strategy == DirectStrategy::Light ? 0 : misWeight(path.scatterPdf, lightPdf);
+    }
+    const Vec3 emitted = limited(path, surface.emitted * weight, depth);
+    const Vec3 contribution = path.throughput * emitted;
+    add(batch, path, contribution);
+    if (vertex && isFinite(contribution)) vertex->emitted = emitted;
+}
+
+void Integrator::describeVertex(const PathState& path, const Surface& surface, const Vec3& wo, int depth,
+                                PathVertex& vertex) const {
+    vertex.point = surface.point;
+    vertex.position = surface.position;
+    vertex.geometricNormal = surface.geometricNormal;
+    vertex.normal = surface.normal;
+    if (depth < needs_.normalDepths) vertex.objectNormal = restNormal(scene_.tables, surface);
+    vertex.wo = wo;
+    vertex.material = surface.material;
+    vertex.roughness = surface.inputs.roughness;
+    vertex.cone = path.cone;
+    vertex.throughput = path.throughput;
+}
+
+void Integrator::sampleLight(PathBatch& batch, uint32_t index, const Surface& surface, const Frame& frame,
+                             const Bsdf& bsdf, int depth, PathVertex* vertex) const {
+    PathState& path = batch.paths[index];
+    const Vec2 pick = path.stream.get2(dimension::vertex(depth, dimension::kLight));
+    const Vec2 u = path.stream.get2(dimension::vertex(depth, dimension::kLightPoint));
+    LightSample light;
+    if (!scene_.lights.sample(surface.position, pick, u, light)) return;
+    if (settings_.strategy == DirectStrategy::Bsdf && light.hittable) return;
+
+    // Scattering towards the light; the shading normal may not let it through the surface.
+    const float side = glm::dot(light.direction, surface.geometricNormal);
+    const Vec3 wi = frame.toLocal(light.direction);
+    if (side * wi.z <= 0) return;
+    const BsdfValue f = bsdf.evaluate(wi);
+    const bool mixed = light.hittable && settings_.strategy == DirectStrategy::Mis;
+    const float weight = (mixed ? misWeight(light.pdf, f.pdf) : 1) / light.pdf;
+    Vec3 radiance = light.radiance * weight;
+    if (!isBlack(path.absorption) && std::isfinite(light.distance))
+        radiance *= transmittance(path.absorption, light.distance);
+    Vec3 diffuse = path.diffuseCount < settings_.maxDiffuseDepth ? f.diffuse * radiance : Vec3(0);
+    Vec3 specular = path.specularCount < settings_.maxSpecularDepth ? f.specular * radiance : Vec3(0);
+    Vec3 sum = diffuse + specular;
+    if (isBlack(sum)) return;
+    if (!isFinite(sum * path.throughput)) {
+        ++batch.nonFinite;
+        return;
+    }
+    if (settings_.clamp && depth > 0) {
+        const float kept = maxComponent(limited(path, sum, depth)) / maxComponent(sum);
+        diffuse *= kept, specular *= kept, sum *= kept;
+    }
+    if (vertex) {
+        vertex->lightSampled = true;
+        vertex->lightPosition = light.position;
+        vertex->light = light.light;
+    }
+    const Vec3 normal = side > 0 ? surface.geometricNormal : -surface.geometricNormal;
+    BatchRay ray;
+    ray.origin = offsetOrigin(surface.position, normal, surface.offset);
+    ray.time = path.ray.time;
+    ray.id = pcgHash(path.hash + static_cast<uint32_t>(2 * depth + 1));
+    ray.direction = light.direction;
+    if (std::isfinite(light.distance)) {
+        const Vec3 segment = light.target - ray.origin;
+        const float length = glm::length(segment);
+        if (!(length > 0)) return;
+        ray.direction = segment / length;
+        ray.tmax = length;
+    }
+    // With the throughput of now: the path goes on before its shadow rays are traced.
+    batch.pending.push_back({index, path.throughput * sum, diffuse, specular});
+    batch.shadowRays.push_back(ray);
+}
+
+bool Integrator::continuePath(PathState& path, const Surface& surface, const Frame& frame, const Bsdf& bsdf,
+                              const Vec3& wo, int depth, PathVertex* vertex) const {
+    const BsdfSample sample = bsdf.sample(path.stream.get1(dimension::vertex(depth, dimension::kLobe)),
+                                          path.stream.get2(dimension::vertex(depth, dimension::kBsdf)));
+    if (sample.lobe == Lobe::None || isBlack(sample.weight) || !isFinite(sample.weight)) return false;
+    if (!sample.delta && !(sample.pdf > 0)) return false;
+    const bool diffuse = sample.lobe == Lobe::Diffuse;
+    if (diffuse ? path.diffuseCount >= settings_.maxDiffuseDepth : path.specularCount >= settings_.maxSpecularDepth)
+        return false;
+    const Vec3 direction = glm::normalize(frame.toWorld(sample.wi));
+    const float side = glm::dot(direction, surface.geometricNormal);
+    if (side * sample.wi.z <= 0) return false;
+
+    // Nothing that the last ray could find.
+    const bool lightOnly = settings_.strategy == DirectStrategy::Light && !sample.delta;
+    const bool lastRay = depth + 1 >= settings_.maxDepth;
+    if (lastRay && depth + 1 >= needs_.vertexDepths && (!scene_.lights.hittable() || lightOnly)) return false;
+
+    Vec3 weight = sample.weight;
+    if (settings_.roulette && depth + 1 >= settings_.rouletteDepth) {
+        const float survival = std::clamp(maxComponent(path.throughput * weight), 0.05f, 0.95f);
+        if (path.stream.get1(dimension::vertex(depth, dimension::kRoulette)) >= survival) return false;
+        weight /= survival;
+    }
+    if (vertex) {
+        vertex->sampledLobe = sample.lobe;
+        vertex->wi = direction;
+        vertex->weight = weight;
+        vertex->pdf = sample.delta ? 0 : sample.pdf;
+        if (depth < needs_.shareDepths && !sample.delta) {
+            const BsdfValue f = bsdf.evaluate(sample.wi);
+            const Vec3 sum = f.diffuse + f.specular;
+            for (int c = 0; c < 3; ++c) vertex->diffuseShare[c] = sum[c] > 0 ? f.diffuse[c] / sum[c] : (diffuse ? 1.0f : 0.0f);
+        }
+    }
+    path.throughput *= weight;
+    path.scatterPosition = surface.position;
+    path.scatterPdf = sample.delta ? 0 : sample.pdf;
+    ++(diffuse ? path.diffuseCount : path.specularCount);
+    path.diffuseBefore |= diffuse;
+    path.cone.spread = std::max(path.cone.spread, diffuse ? kDiffuseSpread : kSpecularSpread * sqr(surface.inputs.roughness));
+    // Through the boundary of a solid, into it or out of it.
+    if (sample.lobe == Lobe::SpecularTransmission && surface.inputs.solid)
+        path.absorption = surface.inputs.entering ? surface.absorption : Vec3(0);
+    path.ray.origin = offsetOrigin(surface.position, side > 0 ? surface.geometricNormal : -surface.geometricNormal,
+                                   surface.offset);
+    path.ray.direction = direction;
+    path.ray.tmin = 0;
+    path.ray.tmax = kInfinity;
+    return true;
+}
+
+void Integrator::traceShadows(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const {
+    const size_t count = batch.shadowRays.size();
+    if (count == 0) return;
+    batch.blocked.resize(count);
+    counts.shadowRays += count;
+    const Coherence coherence = coherent && depth == 0 ? Coherence::Coherent : Coherence::Incoherent;
+    const bool wantsVertices = depth < needs_.vertexDepths;
+    if (needs_.blocker && wantsVertices) {
+        batch.blockers.resize(count);
+        intersectRays(scene_.embree, batch.shadowRays, batch.blockers, coherence);
+        for (size_t i = 0; i < count; ++i) {
+            batch.blocked[i] = batch.blockers[i].valid();
+            if (!batch.blocked[i]) continue;
+            const BatchRay& ray = batch.shadowRays[i];
+            batch.vertices[batch.vertexOf[batch.pending[i].path]].blocker =
+                surfacePoint(scene_.tables, batch.blockers[i], ray.origin + ray.direction * batch.blockers[i].distance,
+                             ray.time);
+        }
+    } else {
+        occludedRays(scene_.embree, batch.shadowRays, batch.blocked, coherence);
+    }
+    for (size_t i = 0; i < count; ++i) {
+        if (batch.blocked[i]) continue;
+        const PendingLight& light = batch.pending[i];
+        PathState& path = batch.paths[light.path];
+        add(batch, path, light.contribution);
+        if (!wantsVertices) continue;
+        PathVertex& vertex = batch.vertices[batch.vertexOf[light.path]];
+        vertex.lightVisible = true;
+        vertex.directDiffuse = light.diffuse;
+        vertex.directSpecular = light.specular;
+    }
+}
+
+void Integrator::report(PathBatch& batch, int depth) const {
+    batch.slots.resize(batch.active.size());
+    batch.samples.resize(batch.active.size());
+    for (size_t row = 0; row < batch.active.size(); ++row) {
+        const PathState& path = batch.paths[batch.active[row]];
+        batch.slots[row] = path.slot;
+        batch.samples[row] = path.sample;
+    }
+    const BounceBatch bounce{depth, batch.slots, batch.samples, batch.vertices, scene_.posed.get()};
+    for (PathObserver* observer : observers_)
+        if (depth < observer->needs().vertexDepths) observer->bounce(bounce);
+}
+
+}  // namespace lumi

@@ -1,0 +1,58 @@
+#pragma once
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "trace/observer.h"
+#include "trace/path_state.h"
+#include "trace/sampler.h"
+#include "trace/surface.h"
+#include "trace/settings.h"
+#include "trace/trace_scene.h"
+#include "trace/tracer.h"
+
+namespace lumi {
+
+/// The one path integrator [Kajiya 1986; Veach 1997, chapters 8 to 10]: next-event estimation with multiple importance
+/// sampling (power heuristic) at every surface, Russian roulette by throughput, depth limits by lobe kind.
+/// It advances a batch of paths bounce by bounce: find hits, shade, trace the light samples together, continue.
+///
+/// Camera and first-hit shadow rays of a batch go in packets, later ones as singles. Each path's result depends on its
+/// start alone, not on the batch. Contributions that are not finite are dropped and counted.
+class Integrator {
+public:
+    Integrator(const TraceScene& scene, const PathSettings& settings, uint32_t seed,
+               std::span<PathObserver* const> observers);
+
+    /// Traces up to PathBatch::kMost paths. With `firstPoints` the first vertices are given: start i sees
+    /// firstPoints[i] from along its ray's direction. `radiance` may be empty; `coherent` says that neighbouring starts
+    /// look alike. Returns false if stopped between bounces.
+    bool run(PathBatch& batch, std::span<const PathStart> starts, std::span<const SurfacePoint> firstPoints,
+             std::span<Vec3> radiance, bool coherent, TraceCounts& counts, const std::stop_token& stop = {}) const;
+
+private:
+    void findHits(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const;
+    void shade(PathBatch& batch, uint32_t index, int depth, std::span<const SurfacePoint> firstPoints) const;
+    void shadeMiss(PathState& path, int depth, PathVertex* vertex, PathBatch& batch) const;
+    void addEmission(PathState& path, const Surface& surface, int depth, PathVertex* vertex, PathBatch& batch) const;
+    void sampleLight(PathBatch& batch, uint32_t index, const Surface& surface, const Frame& frame, const Bsdf& bsdf,
+                     int depth, PathVertex* vertex) const;
+    bool continuePath(PathState& path, const Surface& surface, const Frame& frame, const Bsdf& bsdf, const Vec3& wo,
+                      int depth, PathVertex* vertex) const;
+    void describeVertex(const PathState& path, const Surface& surface, const Vec3& wo, int depth,
+                        PathVertex& vertex) const;
+    void traceShadows(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const;
+    float misWeight(float pdf, float otherPdf) const;
+    Vec3 limited(const PathState& path, const Vec3& radiance, int depth) const;
+    void add(PathBatch& batch, PathState& path, const Vec3& contribution) const;
+    void report(PathBatch& batch, int depth) const;
+
+    const TraceScene& scene_;
+    const PathSettings settings_;
+    const uint32_t seed_;
+    const std::span<PathObserver* const> observers_;
+    ObserverNeeds needs_;
+    bool usesLightSamples_ = true;
+};
+
+}  // namespace lumi

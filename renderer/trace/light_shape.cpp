@@ -1,0 +1,94 @@
+#include "trace/light_shape.h"
+
+#include <cmath>
+
+namespace lumi {
+namespace {
+
+/// Octahedral map between unit directions and the unit square [Cigolle 2014].
+Vec2 octahedronFromDirection(const Vec3& d) {
+    const float scale = 1 / (std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
+    Vec2 p(d.x * scale, d.y * scale);
+    if (d.z < 0)
+        p = Vec2((1 - std::abs(p.y)) * std::copysign(1.0f, p.x), (1 - std::abs(p.x)) * std::copysign(1.0f, p.y));
+    return p * 0.5f + Vec2(0.5f);
+}
+
+Vec3 directionFromOctahedron(Vec2 uv) {
+    const Vec2 p = uv * 2.0f - Vec2(1);
+    Vec3 d(p.x, p.y, 1 - std::abs(p.x) - std::abs(p.y));
+    if (d.z < 0) {
+        const Vec2 folded((1 - std::abs(p.y)) * std::copysign(1.0f, p.x),
+                          (1 - std::abs(p.x)) * std::copysign(1.0f, p.y));
+        d.x = folded.x, d.y = folded.y;
+    }
+    return glm::normalize(d);
+}
+
+Vec3 unitOr(const Vec3& v, const Vec3& fallback) {
+    const float length = glm::length(v);
+    return length > 0 && std::isfinite(length) ? v / length : fallback;
+}
+
+/// Directions of the light's axes: a frame for naming points of spheres.
+Frame frameOf(const LightShape& shape) {
+    const Frame around(shape.normal);
+    const Vec3 x = unitOr(shape.halfX - shape.normal * glm::dot(shape.halfX, shape.normal), around.x);
+    return Frame(x, glm::cross(shape.normal, x), shape.normal);
+}
+
+}  // namespace
+
+Vec3 LightShape::position(Vec2 uv) const {
+    if (type == LightType::Sphere) return centre + radius * normalAt(uv);
+    return centre + (2 * uv.x - 1) * halfX + (2 * uv.y - 1) * halfY;
+}
+
+Vec3 LightShape::normalAt(Vec2 uv) const {
+    return type == LightType::Sphere ? frameOf(*this).toWorld(directionFromOctahedron(uv)) : normal;
+}
+
+Vec2 LightShape::nameOf(const Vec3& positionWorld) const {
+    const Vec3 offset = positionWorld - centre;
+    if (type == LightType::Sphere)
+        return octahedronFromDirection(frameOf(*this).toLocal(unitOr(offset, normal)));
+    // Coordinates in the skewed basis (halfX, halfY) by Cramer's rule.
+    const float xx = glm::dot(halfX, halfX), yy = glm::dot(halfY, halfY), xy = glm::dot(halfX, halfY);
+    const float determinant = xx * yy - xy * xy;
+    if (!(determinant > 0)) return Vec2(0.5f);
+    const float px = glm::dot(offset, halfX), py = glm::dot(offset, halfY);
+    return Vec2((px * yy - py * xy) / determinant, (py * xx - px * xy) / determinant) * 0.5f + Vec2(0.5f);
+}
+
+LightShape lightShape(const Light& light, const Mat4& worldFromLight) {
+    const Vec3 axisX(worldFromLight[0]), axisY(worldFromLight[1]), axisZ(worldFromLight[2]);
+    LightShape shape;
+    shape.type = light.type;
+    shape.radiance = light.radiance * light.power;
+    shape.centre = Vec3(worldFromLight[3]);
+    shape.normal = unitOr(-(normalMatrix(worldFromLight) * Vec3(0, 0, 1)), Vec3(0, 0, -1));
+    if (light.type == LightType::Rectangle) {
+        shape.halfX = axisX * (0.5f * light.size.x);
+        shape.halfY = axisY * (0.5f * light.size.y);
+        shape.area = 4 * glm::length(glm::cross(shape.halfX, shape.halfY));
+        shape.rightAngled = std::abs(glm::dot(shape.halfX, shape.halfY)) <=
+                            1e-5f * glm::length(shape.halfX) * glm::length(shape.halfY);
+        return shape;
+    }
+    const float scaleXy = 0.5f * (glm::length(axisX) + glm::length(axisY));
+    if (light.type == LightType::Sphere) {
+        shape.radius = light.radius * (2 * scaleXy + glm::length(axisZ)) * (1.0f / 3.0f);
+        shape.area = 4 * kPi * sqr(shape.radius);
+    } else {
+        shape.radius = light.radius * scaleXy;
+        shape.area = kPi * sqr(shape.radius);
+    }
+    // A frame across the normal, turned with the light.
+    shape.halfX = axisX, shape.halfY = axisY;
+    const Frame frame = frameOf(shape);
+    shape.halfX = frame.x * shape.radius;
+    shape.halfY = frame.y * shape.radius;
+    return shape;
+}
+
+}  // namespace lumi

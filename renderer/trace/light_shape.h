@@ -1,0 +1,41 @@
+#pragma once
+#include "math/transform.h"
+#include "scene/light.h"
+
+namespace lumi {
+
+/// A rectangle, disk or sphere light in world space: one description for its Embree body, its sampling and its hits.
+/// The body is exact: the mesh that an instance with `light >= 0` carries only describes it to others.
+///
+/// Bodies absorb what meets them and scatter nothing; the flat ones emit from the side that `normal` points to and are
+/// black from behind. Points on a body are named by primitive 0 and two numbers:
+///   rectangle, disk: position = centre + (2u - 1) halfX + (2v - 1) halfY;
+///   sphere: (u, v) is the octahedral map of the direction from the centre in the light's frame.
+struct LightShape {
+    LightType type = LightType::Rectangle;
+    Vec3 centre{0};
+    Vec3 halfX{1, 0, 0}, halfY{0, 1, 0};  ///< to the middle of an edge, or to the rim
+    Vec3 normal{0, 0, -1};                ///< unit; where the flat ones emit
+    float radius = 1;                     ///< sphere: world space
+    float area = 1;                       ///< m^2, of the emitting side
+    bool rightAngled = true;              ///< halfX and halfY are orthogonal
+    Vec3 radiance{1};
+
+    /// World position of the point named (u, v), and its outward unit normal.
+    Vec3 position(Vec2 uv) const;
+    Vec3 normalAt(Vec2 uv) const;
+    /// The name of the body's point nearest to `positionWorld`.
+    Vec2 nameOf(const Vec3& positionWorld) const;
+    bool operator==(const LightShape&) const = default;
+};
+
+/// True for the light types that have a body.
+inline bool hasBody(LightType type) {
+    return type == LightType::Rectangle || type == LightType::Disk || type == LightType::Sphere;
+}
+
+/// The shape of `light`, which has a body, under its transform. Spheres and disks take the mean scale of the axes that
+/// span them.
+LightShape lightShape(const Light& light, const Mat4& worldFromLight);
+
+}  // namespace lumi

@@ -1,0 +1,136 @@
+#include "trace/packets.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace lumi {
+namespace {
+
+template <int N>
+struct Packet;
+template <>
+struct Packet<4> {
+    using Ray = RTCRay4;
+    using RayHit = RTCRayHit4;
+    static constexpr auto intersect = &rtcIntersect4;
+    static constexpr auto occluded = &rtcOccluded4;
+};
+template <>
+struct Packet<8> {
+    using Ray = RTCRay8;
+    using RayHit = RTCRayHit8;
+    static constexpr auto intersect = &rtcIntersect8;
+    static constexpr auto occluded = &rtcOccluded8;
+};
+template <>
+struct Packet<16> {
+    using Ray = RTCRay16;
+    using RayHit = RTCRayHit16;
+    static constexpr auto intersect = &rtcIntersect16;
+    static constexpr auto occluded = &rtcOccluded16;
+};
+
+RTCIntersectContext makeContext(Coherence coherence) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = coherence == Coherence::Coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                                     : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    return context;
+}
+
+template <int N, class PacketRay>
+void fill(PacketRay& packet, int* valid, std::span<const BatchRay> rays) {
+    const int count = static_cast<int>(rays.size());
+    for (int i = 0; i < N; ++i) {
+        valid[i] = i < count ? -1 : 0;
+        // Lanes that are off hold a copy, so that no lane has undefined values.
+        const BatchRay& r = rays[static_cast<size_t>(std::min(i, count - 1))];
+        packet.org_x[i] = r.origin.x, packet.org_y[i] = r.origin.y, packet.org_z[i] = r.origin.z;
+        packet.dir_x[i] = r.direction.x, packet.dir_y[i] = r.direction.y, packet.dir_z[i] = r.direction.z;
+        packet.tnear[i] = r.tmin, packet.tfar[i] = r.tmax;
+        packet.time[i] = r.time;
+        packet.mask[i] = ~0u, packet.id[i] = r.id, packet.flags[i] = 0;
+    }
+}
+
+RTCRay singleRay(const BatchRay& r) {
+    RTCRay ray;
+    ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z;
+    ray.dir_x = r.direction.x, ray.dir_y = r.direction.y, ray.dir_z = r.direction.z;
+    ray.tnear = r.tmin, ray.tfar = r.tmax;
+    ray.time = r.time;
+    ray.mask = ~0u, ray.id = r.id, ray.flags = 0;
+    return ray;
+}
+
+uint32_t instanceOf(uint32_t geometry, uint32_t placed) { return placed != RTC_INVALID_GEOMETRY_ID ? placed : geometry; }
+
+template <int N>
+void intersectPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<RawHit> hits, RTCIntersectContext& context) {
+    alignas(64) typename Packet<N>::RayHit packet;
+    alignas(64) int valid[N];
+    for (size_t first = 0; first < rays.size(); first += N) {
+        const size_t count = std::min<size_t>(N, rays.size() - first);
+        fill<N>(packet.ray, valid, rays.subspan(first, count));
+        for (int i = 0; i < N; ++i) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+        Packet<N>::intersect(valid, scene, &context, &packet);
+        for (size_t i = 0; i < count; ++i) {
+            RawHit& hit = hits[first + i];
+            hit = RawHit();
+            if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+            hit = {packet.ray.tfar[i], instanceOf(packet.hit.geomID[i], packet.hit.instID[0][i]), packet.hit.primID[i],
+                   packet.hit.u[i], packet.hit.v[i]};
+        }
+    }
+}
+
+template <int N>
+void occludedPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked, RTCIntersectContext& context) {
+    alignas(64) typename Packet<N>::Ray packet;
+    alignas(64) int valid[N];
+    for (size_t first = 0; first < rays.size(); first += N) {
+        const size_t count = std::min<size_t>(N, rays.size() - first);
+        fill<N>(packet, valid, rays.subspan(first, count));
+        Packet<N>::occluded(valid, scene, &context, &packet);
+        // Embree marks a blocked ray by tfar = -inf.
+        for (size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0 ? 1 : 0;
+    }
+}
+
+}  // namespace
+
+void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits, Coherence coherence) {
+    assert(hits.size() >= rays.size());
+    RTCIntersectContext context = makeContext(coherence);
+    const int width = coherence == Coherence::Coherent ? scene.packetWidth() : 1;
+    if (width == 16) return intersectPackets<16>(scene.handle(), rays, hits, context);
+    if (width == 8) return intersectPackets<8>(scene.handle(), rays, hits, context);
+    if (width == 4) return intersectPackets<4>(scene.handle(), rays, hits, context);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        RTCRayHit query;
+        query.ray = singleRay(rays[i]);
+        query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(scene.handle(), &context, &query);
+        hits[i] = RawHit();
+        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
+        hits[i] = {query.ray.tfar, instanceOf(query.hit.geomID, query.hit.instID[0]), query.hit.primID, query.hit.u,
+                   query.hit.v};
+    }
+}
+
+void occludedRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked,
+                  Coherence coherence) {
+    assert(blocked.size() >= rays.size());
+    RTCIntersectContext context = makeContext(coherence);
+    const int width = coherence == Coherence::Coherent ? scene.packetWidth() : 1;
+    if (width == 16) return occludedPackets<16>(scene.handle(), rays, blocked, context);
+    if (width == 8) return occludedPackets<8>(scene.handle(), rays, blocked, context);
+    if (width == 4) return occludedPackets<4>(scene.handle(), rays, blocked, context);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        RTCRay ray = singleRay(rays[i]);
+        rtcOccluded1(scene.handle(), &context, &ray);
+        blocked[i] = ray.tfar < 0 ? 1 : 0;
+    }
+}
+
+}  // namespace lumi

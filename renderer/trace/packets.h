@@ -1,0 +1,37 @@
+#pragma once
+#include <span>
+
+#include "trace/embree_scene.h"
+#include "trace/ray.h"
+
+namespace lumi {
+
+/// A ray as batches keep it; `id` seeds stochastic transparency.
+struct BatchRay {
+    Vec3 origin{0};
+    float tmin = 0;
+    Vec3 direction{0, 0, -1};
+    float tmax = kInfinity;
+    float time = 0;
+    uint32_t id = 0;
+};
+
+/// What Embree says of a hit; bodies of lights are named later.
+struct RawHit {
+    float distance = kInfinity;
+    uint32_t instance = kNoInstance, primitive = 0;
+    float u = 0, v = 0;
+    bool valid() const { return instance != kNoInstance; }
+};
+
+/// How rays of a batch relate: `Coherent` ones go in the widest packets, `Incoherent` ones as singles.
+enum class Coherence { Coherent, Incoherent };
+
+/// Nearest hits of rays[0, n).
+void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits, Coherence coherence);
+
+/// blocked[i] = 1 if anything lies in (tmin, tmax) of ray i, else 0.
+void occludedRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked,
+                  Coherence coherence);
+
+}  // namespace lumi

@@ -1,0 +1,68 @@
+#pragma once
+#include <vector>
+
+#include "scene/posed_scene.h"
+#include "trace/embree_scene.h"
+#include "trace/light_shape.h"
+
+namespace lumi {
+
+/// What shading reads of an instance, in one place; pointers are into the posed scene (or Embree's world vertices).
+struct InstanceRecord {
+    const UVec3* triangles = nullptr;
+    const Vec3* positions = nullptr;  ///< object space, or world space if `inWorld`
+    const Vec3* normals = nullptr;    ///< object space, posed; null: flat
+    const Vec3* restNormals = nullptr;    ///< of the mesh, object space
+    const Vec3* restPositions = nullptr;
+    const Vec4* tangents = nullptr;         ///< of the mesh: directions at rest, and handedness
+    const Vec3* deformedTangents = nullptr; ///< posed directions, if the pose has them
+    const Vec2* uv[2] = {nullptr, nullptr};
+    const Vec4* colours = nullptr;
+    const uint32_t* triangleMaterial = nullptr;  ///< null: `material` for all
+    uint32_t material = 0;
+    uint32_t triangleCount = 0;
+    int body = -1;         ///< index into SceneTables::shapes if this is the body of a light
+    bool inWorld = false;
+    bool mirrored = false;
+    float objectScale = 0; ///< largest |coordinate| that the transform's products reach: bounds rounding errors
+    Mat4 worldFromObject{1};
+    Mat3 normalFromObject{1};
+
+    uint32_t materialOf(uint32_t primitive) const {
+        return triangleMaterial ? triangleMaterial[primitive] : material;
+    }
+};
+
+/// A material without what only its textures need.
+struct MaterialRecord {
+    enum : uint32_t {
+        kBaseColor = 1, kMetallicRoughness = 2, kNormal = 4, kEmission = 8, kSpecular = 16, kSpecularColor = 32,
+        kTransmission = 64
+    };
+    uint32_t textures = 0;  ///< which of the above are present
+    bool solid = false, doubleSided = true, emits = false;
+    float metallic = 0, roughness = 0.5f, ior = 1.5f, specular = 1, transmission = 0;
+    Vec3 baseColor{1}, specularColor{1}, emission{0};
+    Vec3 absorption{0};     ///< 1/m inside a solid (Beer-Lambert)
+    const Material* source = nullptr;
+};
+
+/// A light with a body, by index into Scene::lights.
+struct BodyRecord {
+    LightShape shape, previousShape;
+    int light = -1;
+    uint32_t instance = kNone;  ///< that shows it; kNone: it cannot be hit
+    static constexpr uint32_t kNone = ~0u;
+};
+
+/// Flat tables of a posed scene.
+struct SceneTables {
+    std::vector<InstanceRecord> instances;
+    std::vector<MaterialRecord> materials;
+    std::vector<BodyRecord> bodies;
+    size_t byteCount() const;
+};
+
+SceneTables makeSceneTables(const PosedScene& posed, const EmbreeScene& embree);
+
+}  // namespace lumi

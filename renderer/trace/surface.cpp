@@ -1,0 +1,211 @@
+#include "trace/surface.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "trace/surface_material.h"
+
+namespace lumi {
+namespace {
+
+/// Half-precision of the reflection's height above the surface that a bent normal keeps.
+constexpr float kLeastCosine = 1e-3f;
+
+Vec3 unitOr(const Vec3& v, const Vec3& fallback) {
+    const float length2 = glm::dot(v, v);
+    return length2 > 0 && std::isfinite(length2) ? v * (1 / std::sqrt(length2)) : fallback;
+}
+
+template <class T>
+T interpolate(const T* values, const UVec3& t, Vec2 b) {
+    return values[t.x] * (1 - b.x - b.y) + values[t.y] * b.x + values[t.z] * b.y;
+}
+
+/// Bends the shading normal so that the mirror direction of wo stays above the geometric surface
+/// [Keller et al. 2017, "The Iray Light Transport Simulation and Rendering System", appendix].
+Vec3 consistentNormal(const Vec3& shading, const Vec3& geometric, const Vec3& wo) {
+    const Vec3 mirrored = 2 * glm::dot(wo, shading) * shading - wo;
+    const float height = glm::dot(mirrored, geometric);
+    if (height >= kLeastCosine && glm::dot(wo, shading) > 0) return shading;
+    const Vec3 lifted = mirrored + geometric * (kLeastCosine - height);
+    return unitOr(wo + unitOr(lifted, geometric), geometric);
+}
+
+/// The triangle's tangent frame for its normal map: mesh tangents, or the directions of growing u and of falling v
+/// (glTF's images have v down, their green channel points up).
+struct TangentFrame {
+    Vec3 tangent{0}, bitangent{0};
+};
+
+TangentFrame tangentFrame(const InstanceRecord& r, uint32_t primitive, const UVec3& t, Vec2 b, const Vec3& objectNormal,
+                          const Vec3& edge1, const Vec3& edge2, const Vec3& worldNormal, const Texture& texture) {
+    const Mat3 directions(r.worldFromObject);
+    if (r.tangents) {
+        const Vec3 tangent = r.deformedTangents ? interpolate(r.deformedTangents, t, b) : Vec3(interpolate(r.tangents, t, b));
+        const float hand = r.tangents[t.x].w < 0 ? -1.0f : 1.0f;
+        return {directions * tangent, directions * (glm::cross(objectNormal, tangent) * hand)};
+    }
+    const Vec2* uv = r.uv[texture.uvSet == 1 ? 1 : 0];
+    if (!uv) return {};
+    const Vec2 d1 = uv[t.y] - uv[t.x], d2 = uv[t.z] - uv[t.x];
+    const float determinant = d1.x * d2.y - d1.y * d2.x;
+    if (!(std::abs(determinant) > 0)) return {};
+    const float sign = determinant > 0 ? 1.0f : -1.0f;
+    // Gradients of u and v, scaled; across the surface's smooth normal.
+    Vec3 alongU = (edge1 * d2.y - edge2 * d1.y) * sign, alongV = (edge2 * d1.x - edge1 * d2.x) * sign;
+    alongU -= worldNormal * glm::dot(worldNormal, alongU);
+    alongV -= worldNormal * glm::dot(worldNormal, alongV);
+    return {alongU, -alongV};
+}
+
+Surface bodySurface(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo) {
+    const InstanceRecord& r = tables.instances[point.instance];
+    const LightShape& shape = tables.bodies[static_cast<size_t>(r.body)].shape;
+    Surface s;
+    s.point = point;
+    s.body = r.body;
+    s.material = r.material;
+    s.position = shape.position(point.barycentrics);
+    s.outwardNormal = shape.normalAt(point.barycentrics);
+    s.frontFace = glm::dot(s.outwardNormal, wo) > 0;
+    s.normal = s.geometricNormal = s.frontFace ? s.outwardNormal : -s.outwardNormal;
+    s.offset = shape.type == LightType::Sphere ? shape.radius * 2e-4f : 0;
+    s.emitted = s.frontFace ? shape.radiance : Vec3(0);
+    s.inputs.baseColor = Vec3(0);
+    s.inputs.specular = 0;
+    s.inputs.roughness = 1;
+    return s;
+}
+
+}  // namespace
+
+SurfacePoint surfacePoint(const SceneTables& tables, const RawHit& hit, const Vec3& hitPosition, float time) {
+    SurfacePoint point{hit.instance, hit.primitive, {hit.u, hit.v}, time};
+    const int body = tables.instances[hit.instance].body;
+    if (body >= 0) {
+        point.primitive = 0;
+        point.barycentrics = tables.bodies[static_cast<size_t>(body)].shape.nameOf(hitPosition);
+    }
+    return point;
+}
+
+Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo, float width) {
+    const InstanceRecord& r = tables.instances[point.instance];
+    if (r.body >= 0) return bodySurface(tables, point, wo);
+    const UVec3 t = r.triangles[point.primitive];
+    const Vec2 b = point.barycentrics;
+
+    // Position and geometric normal, in the space of the vertices, then in the world.
+    const Vec3 p0 = r.positions[t.x];
+    Vec3 edge1 = r.positions[t.y] - p0, edge2 = r.positions[t.z] - p0;
+    Surface s;
+    s.point = point;
+    s.position = p0 + edge1 * b.x + edge2 * b.y;
+    Vec3 outward = glm::cross(edge1, edge2);
+    if (r.inWorld) {
+        if (r.mirrored) outward = -outward;
+    } else {
+        s.position = transformPoint(r.worldFromObject, s.position);
+        outward = r.normalFromObject * outward;
+        edge1 = transformVector(r.worldFromObject, edge1);
+        edge2 = transformVector(r.worldFromObject, edge2);
+        s.offset = r.objectScale * 0x1p-18f;
+    }
+    s.outwardNormal = unitOr(outward, wo);
+    s.frontFace = glm::dot(s.outwardNormal, wo) >= 0;
+    s.geometricNormal = s.frontFace ? s.outwardNormal : -s.outwardNormal;
+
+    // Smooth normal of the front face.
+    Vec3 objectNormal(0);
+    Vec3 smooth = s.outwardNormal;
+    if (r.normals) {
+        objectNormal = interpolate(r.normals, t, b);
+        smooth = unitOr(r.normalFromObject * objectNormal, s.outwardNormal);
+    }
+
+    // Material, textures filtered over the footprint.
+    s.material = r.materialOf(point.primitive);
+    if (s.material >= tables.materials.size()) s.material = 0;
+    const MaterialRecord& material = tables.materials[s.material];
+    const float cosine = std::abs(glm::dot(s.geometricNormal, wo));
+    const float footprint = width / std::sqrt(std::max(cosine, 0.04f));
+    evaluateMaterial(material, r, t, b, footprint, glm::length(glm::cross(edge1, edge2)), s);
+
+    if (material.textures & MaterialRecord::kNormal) {
+        const TangentFrame frame =
+            tangentFrame(r, point.primitive, t, b, objectNormal, edge1, edge2, smooth, material.source->normalTexture);
+        smooth = mappedNormal(material, r, t, b, footprint, glm::length(glm::cross(edge1, edge2)), frame.tangent,
+                              frame.bitangent, smooth);
+    }
+    Vec3 shading = s.frontFace ? smooth : -smooth;
+    // A normal that points away from the geometric one altogether is a modelling slip.
+    if (glm::dot(shading, s.geometricNormal) < 0) shading = -shading;
+    s.normal = consistentNormal(shading, s.geometricNormal, wo);
+    s.inputs.entering = s.frontFace;
+    return s;
+}
+
+Vec3 restNormal(const SceneTables& tables, const Surface& s) {
+    const InstanceRecord& r = tables.instances[s.point.instance];
+    if (r.body >= 0) return s.normal;
+    const UVec3 t = r.triangles[s.point.primitive];
+    Vec3 rest = r.restNormals ? interpolate(r.restNormals, t, s.point.barycentrics) : Vec3(0);
+    if (!r.restNormals) {
+        const Vec3* p = r.restPositions;
+        rest = glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x]);
+    }
+    return unitOr(s.frontFace ? rest : -rest, Vec3(0, 1, 0));
+}
+
+Vec3 smoothNormal(const SceneTables& tables, const SurfacePoint& point) {
+    const InstanceRecord& r = tables.instances[point.instance];
+    if (r.body >= 0) return tables.bodies[static_cast<size_t>(r.body)].shape.normalAt(point.barycentrics);
+    const UVec3 t = r.triangles[point.primitive];
+    const Vec3 edge1 = r.positions[t.y] - r.positions[t.x], edge2 = r.positions[t.z] - r.positions[t.x];
+    Vec3 outward = glm::cross(edge1, edge2);
+    if (!r.inWorld) outward = r.normalFromObject * outward;
+    else if (r.mirrored) outward = -outward;
+    outward = unitOr(outward, Vec3(0, 1, 0));
+    return r.normals ? unitOr(r.normalFromObject * interpolate(r.normals, t, point.barycentrics), outward) : outward;
+}
+
+Vec3 surfacePosition(const SceneTables& tables, const SurfacePoint& point) {
+    const InstanceRecord& r = tables.instances[point.instance];
+    if (r.body >= 0) return tables.bodies[static_cast<size_t>(r.body)].shape.position(point.barycentrics);
+    const UVec3 t = r.triangles[point.primitive];
+    const Vec3 p0 = r.positions[t.x];
+    const Vec3 p = p0 + (r.positions[t.y] - p0) * point.barycentrics.x + (r.positions[t.z] - p0) * point.barycentrics.y;
+    return r.inWorld ? p : transformPoint(r.worldFromObject, p);
+}
+
+Vec3 previousSurfacePosition(const SceneTables& tables, const PosedScene& posed, const SurfacePoint& point) {
+    const InstanceRecord& r = tables.instances[point.instance];
+    if (r.body >= 0) return tables.bodies[static_cast<size_t>(r.body)].previousShape.position(point.barycentrics);
+    const PosedInstance& pose = posed.instances[point.instance];
+    const bool still = pose.worldFromObject == pose.worldFromObjectPrevious && pose.deformed == pose.deformedPrevious;
+    if (still) return surfacePosition(tables, point);
+    const Vec3* positions = pose.deformedPrevious ? pose.deformedPrevious->positions.data() : r.restPositions;
+    const UVec3 t = r.triangles[point.primitive];
+    const Vec3 p0 = positions[t.x];
+    const Vec3 p = p0 + (positions[t.y] - p0) * point.barycentrics.x + (positions[t.z] - p0) * point.barycentrics.y;
+    return transformPoint(pose.worldFromObjectPrevious, p);
+}
+
+Vec3 triangleEmission(const SceneTables& tables, uint32_t instance, uint32_t primitive, Vec2 barycentrics) {
+    const InstanceRecord& r = tables.instances[instance];
+    return emissionAt(tables.materials[r.materialOf(primitive)], r, r.triangles[primitive], barycentrics);
+}
+
+Vec3 offsetOrigin(const Vec3& position, const Vec3& normal, float extra) {
+    constexpr float kNearOrigin = 1.0f / 32, kFloatScale = 1.0f / 65536, kIntScale = 256;
+    Vec3 result;
+    for (int c = 0; c < 3; ++c) {
+        const auto steps = static_cast<int32_t>(kIntScale * normal[c]);
+        const float moved = std::bit_cast<float>(std::bit_cast<int32_t>(position[c]) + (position[c] < 0 ? -steps : steps));
+        result[c] = std::abs(position[c]) < kNearOrigin ? position[c] + kFloatScale * normal[c] : moved;
+    }
+    return result + normal * extra;
+}
+
+}  // namespace lumi

@@ -1,0 +1,48 @@
+#pragma once
+#include "trace/bsdf.h"
+#include "trace/packets.h"
+#include "trace/ray.h"
+#include "trace/scene_tables.h"
+
+namespace lumi {
+
+/// All that shading wants to know of a hit. World space.
+struct Surface {
+    SurfacePoint point;
+    Vec3 position{0};
+    Vec3 geometricNormal{0, 0, 1};  ///< unit, on wo's side
+    Vec3 normal{0, 0, 1};           ///< unit, on wo's side; bent so that mirror reflections stay above the surface
+    Vec3 outwardNormal{0, 0, 1};    ///< geometric normal of the front face, not flipped
+    bool frontFace = true;          ///< wo is on the front (outer) side
+    int body = -1;                  ///< a light's body, which scatters nothing
+    uint32_t material = 0;
+    float offset = 0;               ///< metres that rays start off the surface beyond rounding of `position` itself
+    Vec3 emitted{0};                ///< radiance towards wo
+    Vec3 absorption{0};             ///< 1/m inside the solid behind this surface
+    BsdfInputs inputs;
+};
+
+/// The name of a hit: bodies of lights are named by where they were hit.
+SurfacePoint surfacePoint(const SceneTables& tables, const RawHit& hit, const Vec3& hitPosition, float time);
+
+/// Interpolates and shades `point` as seen along unit `wo`; `width` is the footprint's width in metres (for mips).
+Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo, float width);
+
+/// Shading normal in object space in the mesh's rest pose, on wo's side, unit; normal maps left out.
+Vec3 restNormal(const SceneTables& tables, const Surface& surface);
+
+/// Unit smooth normal of the front face, normal maps left out.
+Vec3 smoothNormal(const SceneTables& tables, const SurfacePoint& point);
+
+/// World position alone; at the previous frame's time for the second.
+Vec3 surfacePosition(const SceneTables& tables, const SurfacePoint& point);
+Vec3 previousSurfacePosition(const SceneTables& tables, const PosedScene& posed, const SurfacePoint& point);
+
+/// Emission of a triangle's point, textures unfiltered.
+Vec3 triangleEmission(const SceneTables& tables, uint32_t instance, uint32_t primitive, Vec2 barycentrics);
+
+/// A start for rays that leave `position` towards the side of `normal`: moved by a few hundred units in the last place
+/// of each coordinate [Waechter & Binder 2019], and by `extra` metres more.
+Vec3 offsetOrigin(const Vec3& position, const Vec3& normal, float extra = 0);
+
+}  // namespace lumi

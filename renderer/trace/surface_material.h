@@ -1,0 +1,21 @@
+#pragma once
+#include "trace/surface.h"
+
+namespace lumi {
+
+/// Fills the material side of `surface` (inputs, emission, absorption): factors times textures times vertex colour.
+/// `footprint` is the lookups' width in metres on the surface, `twiceArea` that of the triangle in the world.
+/// Values that are not finite or out of range become the nearest that are valid.
+void evaluateMaterial(const MaterialRecord& material, const InstanceRecord& instance, const UVec3& triangle,
+                      Vec2 barycentrics, float footprint, float twiceArea, Surface& surface);
+
+/// Radiance that the front (or, if two-sided, either) face emits.
+Vec3 emissionAt(const MaterialRecord& material, const InstanceRecord& instance, const UVec3& triangle,
+                Vec2 barycentrics);
+
+/// The normal map's normal, unit, world space, on the side of `normal`; `normal` itself without a tangent frame.
+Vec3 mappedNormal(const MaterialRecord& material, const InstanceRecord& instance, const UVec3& triangle,
+                  Vec2 barycentrics, float footprint, float twiceArea, const Vec3& tangent, const Vec3& bitangent,
+                  const Vec3& normal);
+
+}  // namespace lumi

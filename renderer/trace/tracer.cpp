@@ -1,0 +1,300 @@
+#include "trace/tracer.h"
+
+#include <algorithm>
+#include <cassert>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "math/hash.h"
+#include "trace/integrator.h"
+#include "trace/signals_observer.h"
+#include "trace/surface.h"
+#include "trace/trace_scene.h"
+
+namespace lumi {
+namespace {
+
+/// Rays that closestHits() and occluded() trace at a time.
+constexpr int64_t kRayBlock = 1024;
+
+uint32_t compactBits(uint32_t v) {
+    v &= 0x55555555u;
+    v = (v | (v >> 1)) & 0x33333333u;
+    v = (v | (v >> 2)) & 0x0f0f0f0fu;
+    v = (v | (v >> 4)) & 0x00ff00ffu;
+    return (v | (v >> 8)) & 0x0000ffffu;
+}
+
+/// Tile indices of a grid along the Z curve [Morton 1966]: neighbours in time are neighbours in the image.
+std::vector<int> mortonOrder(int columns, int rows) {
+    std::vector<int> order;
+    order.reserve(static_cast<size_t>(columns) * static_cast<size_t>(rows));
+    uint32_t side = 1;
+    while (side < static_cast<uint32_t>(std::max(columns, rows))) side *= 2;
+    for (uint32_t code = 0; code < side * side; ++code) {
+        const int x = static_cast<int>(compactBits(code)), y = static_cast<int>(compactBits(code >> 1));
+        if (x < columns && y < rows) order.push_back(y * columns + x);
+    }
+    return order;
+}
+
+}  // namespace
+
+struct Tracer::Impl {
+    TraceScene scene;
+    std::atomic<uint64_t> cameraRays{0}, bounceRays{0}, shadowRays{0}, nonFinite{0};
+
+    std::mutex mutex;
+    std::vector<std::unique_ptr<PathBatch>> spareBatches;
+
+    std::unique_ptr<PathBatch> takeBatch() {
+        std::lock_guard lock(mutex);
+        if (spareBatches.empty()) return std::make_unique<PathBatch>();
+        auto batch = std::move(spareBatches.back());
+        spareBatches.pop_back();
+        return batch;
+    }
+    void returnBatch(std::unique_ptr<PathBatch> batch) {
+        std::lock_guard lock(mutex);
+        spareBatches.push_back(std::move(batch));
+    }
+    void add(const TraceCounts& counts) {
+        cameraRays.fetch_add(counts.cameraRays, std::memory_order_relaxed);
+        bounceRays.fetch_add(counts.bounceRays, std::memory_order_relaxed);
+        shadowRays.fetch_add(counts.shadowRays, std::memory_order_relaxed);
+        nonFinite.fetch_add(counts.nonFinite, std::memory_order_relaxed);
+    }
+    bool traceBatches(std::span<const PathStart> starts, std::span<const SurfacePoint> firstPoints,
+                      const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
+                      std::span<PathObserver* const> observers, const std::stop_token& stop);
+};
+
+Tracer::Tracer() : impl_(std::make_unique<Impl>()) {}
+Tracer::~Tracer() = default;
+
+void Tracer::bind(std::shared_ptr<const PosedScene> posed) {
+    assert(posed);
+    TraceScene& scene = impl_->scene;
+    if (posed == scene.posed) return;
+    // The old scene's data is in use until Embree and the tables have moved on.
+    const std::shared_ptr<const PosedScene> earlier = std::exchange(scene.posed, posed);
+    scene.embree.bind(*posed);
+    scene.tables = makeSceneTables(*posed, scene.embree);
+    scene.lights.build(*posed, scene.tables);
+    if (earlier && earlier->scene == posed->scene) return;
+    parallelFor(static_cast<int64_t>(scene.tables.materials.size()), [&](int64_t i) {
+        const MaterialRecord& material = scene.tables.materials[static_cast<size_t>(i)];
+        Bsdf::prepare(material.ior, material.transmission > 0);
+    });
+}
+
+const PosedScene& Tracer::scene() const {
+    assert(impl_->scene.posed);
+    return *impl_->scene.posed;
+}
+
+namespace {
+
+/// Camera paths of one sample of a tile's pixels.
+void makeStarts(const FrameSampling& sampling, int left, int top, uint64_t sample, std::vector<PathStart>& starts) {
+    starts.clear();
+    const int right = std::min(left + SignalsObserver::kTile, sampling.extent.width);
+    const int bottom = std::min(top + SignalsObserver::kTile, sampling.extent.height);
+    const Vec2 common = sampling.jitter == Jitter::PerFrame ? frameJitter(sample) + Vec2(0.5f) : Vec2(0.5f);
+    for (int y = top; y < bottom; ++y)
+        for (int x = left; x < right; ++x) {
+            const RandomKey key{static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(sample)};
+            const bool lens = sampling.camera.aperture > 0;
+            Vec2 within = common, onLens(0.5f);
+            if (sampling.jitter == Jitter::PerPixel || lens) {
+                const SampleStream stream(sampling.path.sampler, sampling.path.haltonLoop, sampling.seed, key);
+                if (sampling.jitter == Jitter::PerPixel) within = stream.get2(dimension::kPixel);
+                if (lens) onLens = stream.get2(dimension::kLens);
+            }
+            PathStart start = cameraStart(sampling.camera, Vec2(x, y) + within, onLens, 0);
+            start.key = key;
+            start.slot = static_cast<uint32_t>(y * sampling.extent.width + x);
+            starts.push_back(start);
+        }
+}
+
+}  // namespace
+
+bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_token stop,
+                    std::span<PathObserver* const> extra) {
+    assert(sampling.jitter != Jitter::Auto && sampling.samplesPerPixel > 0 && sampling.camera.extent == sampling.extent);
+    signals.reset(sampling.extent, withDependencies(sampling.wanted), sampling.samplesPerPixel);
+    if (sampling.extent.empty()) return true;
+    SignalsObserver frame(impl_->scene, sampling, signals);
+    std::vector<PathObserver*> observers{&frame};
+    observers.insert(observers.end(), extra.begin(), extra.end());
+    const Integrator integrator(impl_->scene, sampling.path, sampling.seed, observers);
+
+    const std::vector<int> tiles = mortonOrder(frame.tileColumns(), frame.tileRows());
+    std::atomic<size_t> done{0};
+    parallelFor(
+        static_cast<int64_t>(tiles.size()),
+        [&](int64_t index) {
+            const int tile = tiles[static_cast<size_t>(index)];
+            const int left = tile % frame.tileColumns() * SignalsObserver::kTile;
+            const int top = tile / frame.tileColumns() * SignalsObserver::kTile;
+            std::unique_ptr<PathBatch> batch = impl_->takeBatch();
+            TraceCounts counts;
+            bool whole = true;
+            frame.beginTile(tile);
+            for (int s = 0; s < sampling.samplesPerPixel && whole; ++s) {
+                makeStarts(sampling, left, top, sampling.firstSample + static_cast<uint64_t>(s), batch->starts);
+                whole = integrator.run(*batch, batch->starts, {}, {}, true, counts, stop);
+            }
+            if (whole) frame.endTile(tile), ++done;
+            impl_->add(counts);
+            impl_->returnBatch(std::move(batch));
+        },
+        stop);
+    return done == tiles.size();
+}
+
+bool Tracer::Impl::traceBatches(std::span<const PathStart> starts, std::span<const SurfacePoint> firstPoints,
+                                const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
+                                std::span<PathObserver* const> observers, const std::stop_token& stop) {
+    const Integrator integrator(scene, settings, seed, observers);
+    const auto count = static_cast<int64_t>(starts.size());
+    std::atomic<int64_t> done{0};
+    // A block ends where its last slot ends, so that no slot is in two batches at a time.
+    const auto slotEnd = [&](int64_t i) {
+        while (i > 0 && i < count && starts[static_cast<size_t>(i)].slot == starts[static_cast<size_t>(i - 1)].slot) ++i;
+        return i;
+    };
+    parallelRanges(
+        count, static_cast<int64_t>(PathBatch::kMost),
+        [&](int64_t rangeBegin, int64_t rangeEnd) {
+            const int64_t begin = observers.empty() ? rangeBegin : slotEnd(rangeBegin);
+            const int64_t end = observers.empty() ? rangeEnd : slotEnd(rangeEnd);
+            std::unique_ptr<PathBatch> batch = takeBatch();
+            TraceCounts counts;
+            for (int64_t i = begin; i < end;) {
+                const auto size = static_cast<size_t>(std::min<int64_t>(end - i, PathBatch::kMost));
+                const auto first = static_cast<size_t>(i);
+                const bool whole = integrator.run(
+                    *batch, starts.subspan(first, size),
+                    firstPoints.empty() ? firstPoints : firstPoints.subspan(first, size),
+                    radiance.empty() ? radiance : radiance.subspan(first, size), firstPoints.empty(), counts, stop);
+                if (!whole) break;
+                done += static_cast<int64_t>(size);
+                i += static_cast<int64_t>(size);
+            }
+            add(counts);
+            returnBatch(std::move(batch));
+        },
+        stop);
+    return done == count;
+}
+
+bool Tracer::tracePaths(std::span<const PathStart> starts, const PathSettings& settings, uint32_t seed,
+                        std::span<Vec3> radiance, std::span<PathObserver* const> observers, std::stop_token stop) {
+    assert(radiance.empty() || radiance.size() == starts.size());
+    return impl_->traceBatches(starts, {}, settings, seed, radiance, observers, stop);
+}
+
+bool Tracer::shade(std::span<const SurfacePoint> points, std::span<const Vec3> wo, std::span<const RandomKey> keys,
+                   const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
+                   std::span<PathObserver* const> observers, std::stop_token stop) {
+    assert(points.size() == wo.size() && points.size() == keys.size());
+    std::vector<PathStart> starts(points.size());
+    parallelRanges(static_cast<int64_t>(starts.size()), 4096, [&](int64_t begin, int64_t end) {
+        for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+            starts[i].ray.direction = -wo[i];
+            starts[i].ray.time = points[i].time;
+            if (points[i].valid()) starts[i].ray.origin = surfacePosition(impl_->scene.tables, points[i]);
+            starts[i].key = keys[i];
+            starts[i].slot = static_cast<uint32_t>(i);
+        }
+    });
+    return impl_->traceBatches(starts, points, settings, seed, radiance, observers, stop);
+}
+
+namespace {
+
+void toBatchRays(std::span<const Ray> rays, std::vector<BatchRay>& out, size_t firstId) {
+    out.resize(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const Ray& r = rays[i];
+        out[i] = {r.origin, r.tmin, r.direction, r.tmax, r.time, pcgHash(static_cast<uint32_t>(firstId + i))};
+    }
+}
+
+}  // namespace
+
+void Tracer::closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::stop_token stop) {
+    assert(rays.size() == hits.size());
+    parallelRanges(
+        static_cast<int64_t>(rays.size()), kRayBlock,
+        [&](int64_t begin, int64_t end) {
+            const auto first = static_cast<size_t>(begin), count = static_cast<size_t>(end - begin);
+            std::vector<BatchRay> batch;
+            std::vector<RawHit> raw(count);
+            toBatchRays(rays.subspan(first, count), batch, first);
+            intersectRays(impl_->scene.embree, batch, raw, Coherence::Incoherent);
+            for (size_t i = 0; i < count; ++i) {
+                hits[first + i] = Hit();
+                if (!raw[i].valid()) continue;
+                const Vec3 position = batch[i].origin + batch[i].direction * raw[i].distance;
+                hits[first + i] = {surfacePoint(impl_->scene.tables, raw[i], position, batch[i].time), raw[i].distance};
+            }
+            impl_->add({.bounceRays = count});
+        },
+        stop);
+}
+
+void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked, std::span<SurfacePoint> blockers,
+                      std::stop_token stop) {
+    assert(rays.size() == blocked.size());
+    parallelRanges(
+        static_cast<int64_t>(rays.size()), kRayBlock,
+        [&](int64_t begin, int64_t end) {
+            const auto first = static_cast<size_t>(begin), count = static_cast<size_t>(end - begin);
+            std::vector<BatchRay> batch;
+            toBatchRays(rays.subspan(first, count), batch, first);
+            impl_->add({.shadowRays = count});
+            if (blockers.empty()) {
+                occludedRays(impl_->scene.embree, batch, blocked.subspan(first, count), Coherence::Incoherent);
+                return;
+            }
+            std::vector<RawHit> raw(count);
+            intersectRays(impl_->scene.embree, batch, raw, Coherence::Incoherent);
+            for (size_t i = 0; i < count; ++i) {
+                blocked[first + i] = raw[i].valid();
+                blockers[first + i] = SurfacePoint();
+                if (!raw[i].valid()) continue;
+                const Vec3 position = batch[i].origin + batch[i].direction * raw[i].distance;
+                blockers[first + i] = surfacePoint(impl_->scene.tables, raw[i], position, batch[i].time);
+            }
+        },
+        stop);
+}
+
+Vec3 Tracer::position(const SurfacePoint& point) const {
+    return point.valid() ? surfacePosition(impl_->scene.tables, point) : Vec3(0);
+}
+
+Vec3 Tracer::previousPosition(const SurfacePoint& point) const {
+    return point.valid() ? previousSurfacePosition(impl_->scene.tables, *impl_->scene.posed, point) : Vec3(0);
+}
+
+Vec3 Tracer::normal(const SurfacePoint& point) const {
+    return point.valid() ? smoothNormal(impl_->scene.tables, point) : Vec3(0);
+}
+
+TraceCounts Tracer::counts() const {
+    return {impl_->cameraRays, impl_->bounceRays, impl_->shadowRays, impl_->nonFinite};
+}
+
+void Tracer::resetCounts() { impl_->cameraRays = impl_->bounceRays = impl_->shadowRays = impl_->nonFinite = 0; }
+
+size_t Tracer::byteCount() const {
+    return impl_->scene.embree.byteCount() + impl_->scene.tables.byteCount() + impl_->scene.lights.byteCount();
+}
+
+}  // namespace lumi
