@@ -5,6 +5,7 @@
 
 #include "scene/procedural/generators.h"
 #include "scene/procedural/primitives.h"
+#include "scene/procedural/texture_tools.h"
 
 namespace lumi {
 namespace {
@@ -46,6 +47,13 @@ constexpr std::array kProcedurals{
 
 constexpr std::array kTextures{
     ProceduralTextureEntry{"checker", "Squares of two colours.", makeChecker},
+    ProceduralTextureEntry{"wood", "Boards with grain and joints.", makeWood},
+    ProceduralTextureEntry{"tiles", "Stone floor tiles with veins and grout.", makeTiles},
+    ProceduralTextureEntry{"masonry", "Courses of dressed stone or brick.", makeMasonry},
+    ProceduralTextureEntry{"plaster", "Plaster with soft clouds of tone.", makePlaster},
+    ProceduralTextureEntry{"weave", "Woven cloth.", makeWeave},
+    ProceduralTextureEntry{"carpet", "A knotted rug, drawn once over 0 to 1.", makeCarpet},
+    ProceduralTextureEntry{"painting", "A picture for a frame or a label, drawn once over 0 to 1.", makePainting},
 };
 
 }  // namespace
