@@ -84,8 +84,7 @@ std::string rangeText(const ParameterInfo& info) { return fmt::format("{:g} to {
 
 bool inRange(double x, const ParameterInfo& info) {
     // Floats are declared with double limits: 0.1 as float is a little above 0.1.
-    const double slack = 1e-6 * (std::abs(info.min) + std::abs(info.max));
-    return x >= info.min - slack && x <= info.max + slack;
+    return x >= info.min - 1e-6 * std::abs(info.min) && x <= info.max + 1e-6 * std::abs(info.max);
 }
 
 std::string joined(const std::vector<std::string>& names) {
@@ -143,7 +142,7 @@ void check(const ParameterInfo& info, const ParameterValue& value, const std::st
 
 float parseFloat(const std::string& text, const ParameterInfo& info, const std::string& where) {
     float value = 0;
-    const char* begin = text.data() + (text.size() > 1 && text[0] == '+');
+    const char* begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-');
     const auto [end, code] = std::from_chars(begin, text.data() + text.size(), value);
     if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
         throwUsage({fmt::format("\"{}\" is not a number", info.id), where, "a number", '"' + text + '"'});
@@ -196,12 +195,15 @@ ParameterValue parseParameter(const ParameterInfo& info, const std::string& text
     switch (info.type) {
         case ParameterType::Number: return parseFloat(text, info, where);
         case ParameterType::Integer: {
+            // Exactly if it is written as a whole number; "1e3" by way of a float.
+            int exact = 0;
+            const char* begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-');
+            const auto [end, code] = std::from_chars(begin, text.data() + text.size(), exact);
+            if (code == std::errc() && end == text.data() + text.size()) return exact;
             const float value = parseFloat(text, info, where);
             if (value != std::floor(value) || std::abs(value) > 2e9f)
                 throwUsage({fmt::format("\"{}\" has the wrong type", info.id), where, "a whole number", text});
-            int exact = 0;
-            std::from_chars(text.data(), text.data() + text.size(), exact);
-            return exact;
+            return static_cast<int>(value);
         }
         case ParameterType::Toggle:
             if (text == "true" || text == "on" || text == "1") return true;

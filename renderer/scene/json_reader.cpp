@@ -87,8 +87,7 @@ std::string readText(const JsonTree& tree, const JsonValue& value, const std::st
 double readNumber(const JsonTree& tree, const JsonValue& value, const std::string& name, double min, double max) {
     if (!value.isNumber()) refuseValue(tree, value, name, "a number");
     // Limits may be floats: 0.1f is a little above 0.1. Values are kept as floats, so they must fit one.
-    const double slack = std::isinf(max) ? 0 : 1e-6 * (std::abs(min) + std::abs(max));
-    if (value.number < min - slack || value.number > max + slack) refuseValue(tree, value, name, rangeText(min, max));
+    if (value.number < min - 1e-6 * std::abs(min) || value.number > max + 1e-6 * std::abs(max)) refuseValue(tree, value, name, rangeText(min, max));
     if (std::abs(value.number) > 3.4e38) refuseValue(tree, value, name, "at most 3.4e38");
     return value.number;
 }
@@ -140,7 +139,10 @@ const JsonValue* ObjectReader::find(const char* key) {
 const JsonValue& ObjectReader::need(const char* key) {
     const JsonValue* value = find(key);
     if (!value) {
-        finish();  // A misspelt key is the likelier fault and says more.
+        // A misspelt key is the likelier fault, and says more.
+        for (const JsonMember& member : value_.members)
+            if (!taken_.contains(member.key) && !nearestName(member.key, std::vector<std::string>{key}).empty())
+                refuseName(tree_, member.at, "key", member.key, {key});
         fail(value_.at, fmt::format("\"{}\" has no \"{}\"", name_, key));
     }
     return *value;
