@@ -7,6 +7,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -54,7 +55,8 @@ std::string readTextFile(const fs::path& path, uint64_t limitBytes) { return rea
 void writeFileAtomically(const fs::path& path, std::span<const uint8_t> bytes) {
     std::error_code failure;
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), failure);
-    const fs::path temporary = path.string() + fmt::format(".{}.tmp", getpid());
+    static std::atomic<uint32_t> serial{0};  // two threads may write one path
+    const fs::path temporary = path.string() + fmt::format(".{}.{}.tmp", getpid(), serial++);
     const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (file < 0) throwWriteError(path, errno);
     size_t written = 0;

@@ -1,0 +1,67 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/isa.h"
+#include "support/expect_error.h"
+
+namespace lumi {
+namespace {
+
+TEST(Errors, TextSaysWhereWhatExpectedAndFound) {
+    const Error full(ErrorKind::BadInput, {"\"levels\" is out of range", "atrium.json:12:9", "1 to 8", "12"});
+    EXPECT_STREQ(full.what(), "atrium.json:12:9: \"levels\" is out of range; expected 1 to 8, found 12");
+    EXPECT_STREQ(Error(ErrorKind::Usage, {"no such thing", "", "", "x"}).what(), "no such thing; found x");
+    EXPECT_STREQ(Error(ErrorKind::Usage, {"no such thing", "", "y", ""}).what(), "no such thing; expected y");
+    EXPECT_STREQ(Error(ErrorKind::Usage, {"no such thing", "", "", ""}).what(), "no such thing");
+    EXPECT_EQ(full.text().expected, "1 to 8");
+}
+
+TEST(Errors, ExitCodesAreTheContract) {
+    const std::pair<ErrorKind, int> codes[] = {{ErrorKind::CheckFailed, 1}, {ErrorKind::Usage, 2},
+                                               {ErrorKind::BadInput, 3},    {ErrorKind::NoDisplay, 4},
+                                               {ErrorKind::Resources, 5},   {ErrorKind::Interrupted, 130}};
+    for (const auto& [kind, code] : codes) EXPECT_EQ(Error(kind, {"x", "", "", ""}).exitCode(), code);
+    test::expectError(ErrorKind::BadInput, [] { throwBadInput({"x", "", "", ""}); });
+    test::expectError(ErrorKind::Usage, [] { throwUsage({"x", "", "", ""}); });
+}
+
+TEST(Errors, EditDistance) {
+    EXPECT_EQ(editDistance("kitten", "sitting"), 3);
+    EXPECT_EQ(editDistance("", "abc"), 3);
+    EXPECT_EQ(editDistance("abc", ""), 3);
+    EXPECT_EQ(editDistance("same", "same"), 0);
+}
+
+TEST(Errors, NearestNameIsNearOrNothing) {
+    const std::vector<const char*> names = {"svgf", "accumulate", "none"};
+    EXPECT_EQ(nearestName("svgv", names), "svgf");
+    EXPECT_EQ(nearestName("acumulate", names), "accumulate");
+    EXPECT_EQ(nearestName("texture-space", names), "");
+    EXPECT_EQ(nearestName("x", std::vector<std::string>{}), "");
+}
+
+TEST(Isa, NamesRoundTripAndUnknownOnesAreRefused) {
+    for (const Isa isa : {Isa::Baseline, Isa::V3, Isa::V4}) EXPECT_EQ(parseIsa(isaName(isa)), isa);
+    test::expectError(ErrorKind::Usage, [] { parseIsa("sse9"); }, {"sse9", "baseline"});
+}
+
+TEST(Isa, SelectionFollowsTheActiveLevel) {
+    const Isa best = detectIsa();
+    const int a = 1, b = 2, c = 3;
+    for (const Isa isa : {Isa::Baseline, Isa::V3, Isa::V4}) {
+        if (isa > best) {
+            test::expectError(ErrorKind::Usage, [&] { setIsa(isa); }, {isaName(isa)});
+            continue;
+        }
+        setIsa(isa);
+        EXPECT_EQ(activeIsa(), isa);
+        EXPECT_EQ(selectKernels(a, b, c), static_cast<int>(isa) + 1);
+    }
+    setIsa(best);
+}
+
+}  // namespace
+}  // namespace lumi

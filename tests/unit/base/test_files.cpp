@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "base/files.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace lumi {
+namespace {
+namespace fs = std::filesystem;
+using test::expectError;
+using test::TemporaryFolder;
+
+TEST(Files, RoundTripWithEveryByte) {
+    const TemporaryFolder folder;
+    std::vector<uint8_t> bytes;
+    for (int i = 0; i < 1000; ++i) bytes.push_back(static_cast<uint8_t>(i));
+    writeFileAtomically(folder / "a/b/c.bin", bytes);
+    EXPECT_EQ(readFile(folder / "a/b/c.bin"), bytes);
+    writeFileAtomically(folder / "empty", std::string_view());
+    EXPECT_TRUE(readFile(folder / "empty").empty());
+    writeFileAtomically(folder / "a/b/c.bin", std::string_view("new"));
+    EXPECT_EQ(readTextFile(folder / "a/b/c.bin"), "new");
+}
+
+TEST(Files, WritingLeavesNothingElseBehind) {
+    const TemporaryFolder folder;
+    writeFileAtomically(folder / "a.txt", "hello");
+    fs::create_directories(folder / "taken");
+    fs::create_directories(folder / "taken/inside");
+    expectError(ErrorKind::Usage, [&] { writeFileAtomically(folder / "taken", "x"); }, {"taken"});
+    int entries = 0;
+    for (const auto& entry : fs::directory_iterator(folder.path())) entries += entry.exists() ? 1 : 0;
+    EXPECT_EQ(entries, 2);
+}
+
+TEST(Files, WritersOfOneFileDoNotMix) {
+    const TemporaryFolder folder;
+    const std::string a(200000, 'a'), b(300000, 'b');
+    const auto write = [&](const std::string& text) {
+        for (int round = 0; round < 20; ++round) writeFileAtomically(folder / "shared.txt", text);
+    };
+    std::thread first(write, a), second(write, b);
+    first.join(), second.join();
+    const std::string left = readTextFile(folder / "shared.txt");
+    EXPECT_TRUE(left == a || left == b);
+}
+
+TEST(Files, UnreadableThingsAreNamed) {
+    const TemporaryFolder folder;
+    expectError(ErrorKind::BadInput, [&] { readFile(folder / "missing"); }, {"missing", "no such file"});
+    expectError(ErrorKind::BadInput, [&] { readFile(folder.path()); }, {"directory"});
+    expectError(ErrorKind::BadInput, [] { readFile("/dev/zero"); }, {"/dev/zero", "regular"});
+    writeFileAtomically(folder / "big", std::string(100, 'x'));
+    expectError(ErrorKind::BadInput, [&] { readFile(folder / "big", 99); }, {"99 bytes", "100 bytes"});
+    EXPECT_EQ(readFile(folder / "big", 100).size(), 100u);
+    expectError(ErrorKind::Usage, [] { writeFileAtomically("/proc/nothing/here", "x"); }, {"/proc/nothing/here"});
+}
+
+TEST(Files, UnusedPathsCount) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(unusedPath(folder / "shot.png"), folder / "shot.png");
+    writeFileAtomically(folder / "shot.png", "");
+    EXPECT_EQ(unusedPath(folder / "shot.png"), folder / "shot-1.png");
+    writeFileAtomically(folder / "shot-1.png", "");
+    EXPECT_EQ(unusedPath(folder / "shot.png"), folder / "shot-2.png");
+}
+
+TEST(Files, ExtensionsAndDigests) {
+    EXPECT_EQ(lowerExtension("A.B.ExR"), ".exr");
+    EXPECT_EQ(lowerExtension("none"), "");
+    // XXH3 of nothing, seed 0.
+    EXPECT_EQ(digest({}), "2d06800538d394c2");
+    const std::vector<uint8_t> a = {1, 2, 3}, b = {1, 2, 4};
+    EXPECT_NE(digest64(a), digest64(b));
+    EXPECT_NE(digest64(a, 1), digest64(a, 2));
+    EXPECT_EQ(digest(a).size(), 16u);
+}
+
+}  // namespace
+}  // namespace lumi

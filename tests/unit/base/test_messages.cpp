@@ -1,0 +1,60 @@
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "base/messages.h"
+#include "base/timer.h"
+
+namespace lumi {
+namespace {
+
+TEST(Messages, RepeatedTextsAreCountedAndHeardOnce) {
+    MessageLog log;
+    int heard = 0;
+    log.setListener([&](const Message& message) {
+        ++heard;
+        // The listener may use the log: it is called outside its lock.
+        EXPECT_FALSE(log.messages().empty());
+        EXPECT_EQ(message.repeats, 1);
+    });
+    log.warning("a");
+    log.info("b");
+    log.warning("a");
+    log.error("a");
+    EXPECT_EQ(heard, 3);
+    ASSERT_EQ(log.messages().size(), 3u);
+    EXPECT_EQ(log.messages()[0].repeats, 2);
+    EXPECT_EQ(log.messages()[2].severity, Severity::Error);
+    EXPECT_EQ(log.warnings(), std::vector<std::string>{"a"});
+    log.clear();
+    EXPECT_TRUE(log.messages().empty());
+}
+
+TEST(Messages, ManyThreadsMayReport) {
+    MessageLog log;
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t)
+        threads.emplace_back([&] {
+            for (int i = 0; i < 100; ++i) log.info("same");
+        });
+    for (std::thread& thread : threads) thread.join();
+    ASSERT_EQ(log.messages().size(), 1u);
+    EXPECT_EQ(log.messages()[0].repeats, 400);
+}
+
+TEST(Timer, StagesAddUpInTheirFirstOrder) {
+    StageTimer timer;
+    timer.add("trace", 2);
+    timer.setPrefix("svgf.");
+    { const auto scope = timer.measure("filter"); }
+    timer.add("trace", 3);
+    ASSERT_EQ(timer.stages().size(), 2u);
+    EXPECT_EQ(timer.stages()[0], (std::pair<std::string, double>("trace", 5)));
+    EXPECT_EQ(timer.stages()[1].first, "svgf.filter");
+    EXPECT_GE(timer.stages()[1].second, 0);
+    timer.clear();
+    EXPECT_TRUE(timer.stages().empty());
+}
+
+}  // namespace
+}  // namespace lumi
