@@ -272,6 +272,14 @@ bool Bsdf::isDelta() const {
            (probability_[kTransmission] == 0 || deltaTransmission_);
 }
 
+void Bsdf::keep(bool diffuse, bool specular) {
+    if (!diffuse) albedo_[kDiffuse] = Vec3(0);
+    if (!specular) albedo_[kReflection] = albedo_[kTransmission] = Vec3(0);
+    std::fill(std::begin(probability_), std::end(probability_), 0.0f);
+    specularProbability_ = 0, reflectedShare_ = 1;
+    chooseProbabilities();
+}
+
 void Bsdf::prepare(float ior, bool transmits) {
     SchlickAlbedo::get();
     if (transmits) DielectricAlbedo::get(DielectricAlbedo::roundedIor(ior), true);

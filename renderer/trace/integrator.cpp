@@ -29,6 +29,12 @@ Vec3 transmittance(const Vec3& absorption, float distance) {
     return isBlack(absorption) ? Vec3(1) : glm::exp(-absorption * distance);
 }
 
+/// Of what lies on one side of a surface: past the boundary of a solid, into it or out of it, else what the path is in.
+Vec3 absorptionTowards(const PathState& path, const Surface& surface, bool farSide) {
+    if (!farSide || !surface.inputs.solid) return path.absorption;
+    return surface.inputs.entering ? surface.absorption : Vec3(0);
+}
+
 }  // namespace
 
 Integrator::Integrator(const TraceScene& scene, const PathSettings& settings, uint32_t seed,
@@ -158,11 +164,14 @@ void Integrator::shade(PathBatch& batch, uint32_t row, int depth, std::span<cons
     const Frame frame(surface.normal);
     Vec3 local = frame.toLocal(wo);
     local.z = std::max(local.z, 1e-5f);
-    const Bsdf bsdf(surface.inputs, local);
+    Bsdf bsdf(surface.inputs, local);
     if (vertex && depth < needs_.albedoDepths) {
         vertex->albedo = bsdf.albedo(Lobe::Diffuse);
         vertex->specularAlbedo = bsdf.specularAlbedo();
     }
+    const bool mayDiffuse = path.diffuseCount < settings_.maxDiffuseDepth;
+    const bool maySpecular = path.specularCount < settings_.maxSpecularDepth;
+    if (!mayDiffuse || !maySpecular) bsdf.keep(mayDiffuse, maySpecular);
     if (usesLightSamples_ && !bsdf.isDelta()) sampleLight(batch, index, surface, frame, bsdf, depth, vertex);
     path.alive = continuePath(path, surface, frame, bsdf, wo, depth, vertex);
 }
@@ -233,10 +242,9 @@ void Integrator::sampleLight(PathBatch& batch, uint32_t index, const Surface& su
     const bool mixed = light.hittable && settings_.strategy == DirectStrategy::Mis;
     const float weight = (mixed ? misWeight(light.pdf, f.pdf) : 1) / light.pdf;
     Vec3 radiance = light.radiance * weight;
-    if (!isBlack(path.absorption) && std::isfinite(light.distance))
-        radiance *= transmittance(path.absorption, light.distance);
-    Vec3 diffuse = path.diffuseCount < settings_.maxDiffuseDepth ? f.diffuse * radiance : Vec3(0);
-    Vec3 specular = path.specularCount < settings_.maxSpecularDepth ? f.specular * radiance : Vec3(0);
+    if (std::isfinite(light.distance))
+        radiance *= transmittance(absorptionTowards(path, surface, wi.z < 0), light.distance);
+    Vec3 diffuse = f.diffuse * radiance, specular = f.specular * radiance;
     Vec3 sum = diffuse + specular;
     if (isBlack(sum)) return;
     if (!isFinite(sum * path.throughput)) {
@@ -277,8 +285,6 @@ bool Integrator::continuePath(PathState& path, const Surface& surface, const Fra
     if (sample.lobe == Lobe::None || isBlack(sample.weight) || !isFinite(sample.weight)) return false;
     if (!sample.delta && !(sample.pdf > 0)) return false;
     const bool diffuse = sample.lobe == Lobe::Diffuse;
-    if (diffuse ? path.diffuseCount >= settings_.maxDiffuseDepth : path.specularCount >= settings_.maxSpecularDepth)
-        return false;
     const Vec3 direction = glm::normalize(frame.toWorld(sample.wi));
     const float side = glm::dot(direction, surface.geometricNormal);
     if (side * sample.wi.z <= 0) return false;
@@ -311,9 +317,7 @@ bool Integrator::continuePath(PathState& path, const Surface& surface, const Fra
     ++(diffuse ? path.diffuseCount : path.specularCount);
     path.diffuseBefore |= diffuse;
     path.cone.spread = std::max(path.cone.spread, diffuse ? kDiffuseSpread : kSpecularSpread * sqr(surface.inputs.roughness));
-    // Through the boundary of a solid, into it or out of it.
-    if (sample.lobe == Lobe::SpecularTransmission && surface.inputs.solid)
-        path.absorption = surface.inputs.entering ? surface.absorption : Vec3(0);
+    path.absorption = absorptionTowards(path, surface, sample.wi.z < 0);
     path.ray.origin = offsetOrigin(surface.position, side > 0 ? surface.geometricNormal : -surface.geometricNormal,
                                    surface.offset);
     path.ray.direction = direction;

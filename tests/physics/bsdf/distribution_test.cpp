@@ -135,6 +135,34 @@ TEST(BsdfDistribution, EveryLiveLobeIsDrawn) {
     });
 }
 
+TEST(BsdfDistribution, KeepTakesLobesAway) {
+    BsdfInputs inputs;
+    inputs.transmission = 0.5f;
+    inputs.baseColor = Vec3(0.8f);
+    for (const float roughness : {0.0f, 0.4f})
+        for (const bool diffuse : {true, false}) {
+            inputs.roughness = roughness;
+            const Vec3 wo = directionAt(0.7f);
+            const Bsdf whole(inputs, wo);
+            Bsdf part = whole;
+            part.keep(diffuse, !diffuse);
+            EXPECT_EQ(isBlack(part.albedo(Lobe::Diffuse)), !diffuse);
+            EXPECT_EQ(isBlack(part.specularAlbedo()), diffuse);
+            const Vec3 wi = glm::normalize(Vec3(-0.5f, -0.2f, 0.8f));
+            EXPECT_EQ(part.evaluate(wi).diffuse, diffuse ? whole.evaluate(wi).diffuse : Vec3(0));
+            EXPECT_EQ(part.evaluate(wi).specular, diffuse ? Vec3(0) : whole.evaluate(wi).specular);
+            for (const float u : {0.0f, 0.3f, 0.6f, 0.99f}) {
+                const BsdfSample s = part.sample(u, {0.4f, 0.2f});
+                ASSERT_NE(s.lobe, Lobe::None);
+                EXPECT_EQ(s.lobe == Lobe::Diffuse, diffuse);
+            }
+            EXPECT_EQ(part.isDelta(), !diffuse && roughness == 0);
+        }
+    Bsdf nothing(inputs, directionAt(0.7f));
+    nothing.keep(false, false);
+    EXPECT_EQ(nothing.sample(0.5f, {0.5f, 0.5f}).lobe, Lobe::None);
+}
+
 // f(wo, wi) = f(wi, wo) for what stays on one side.
 TEST(BsdfDistribution, Reciprocity) {
     for (const NamedMaterial& material : materials())

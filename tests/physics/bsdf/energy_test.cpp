@@ -22,7 +22,7 @@ const char* nameOf(Lobe lobe) {
 // In a furnace of radiance 1 a lobe shows its directional albedo; all together never more than arrives.
 TEST(BsdfEnergy, FurnaceBySamplingEqualsAlbedo) {
     forEachBsdf(kRoughnesses, kCosines, [](const Bsdf& bsdf, const BsdfInputs&, const Vec3&, const std::string& label) {
-        constexpr uint32_t kSamples = 32768;
+        constexpr uint32_t kSamples = 16384;
         glm::dvec3 sums[3] = {}, total(0);
         for (uint32_t i = 0; i < kSamples; ++i) {
             const SampleStream stream(SamplerKind::Sobol, 0, 1, {3, 4, i});

@@ -55,7 +55,7 @@ void forEachBsdf(const std::vector<float>& roughnesses, const std::vector<float>
 
 namespace {
 
-constexpr int kRings = 240, kSectors = 96;
+constexpr int kRings = 180, kSectors = 64;
 
 Vec3 integrateHemisphere(const Bsdf& bsdf) {
     glm::dvec3 sum(0);
