@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -9,12 +11,25 @@
 namespace lumi {
 using nlohmann::json;
 
+namespace {
+
+/// The float as the double that people write: 0.1, not 0.10000000149011612. Reads back as the same float.
+double written(float value) {
+    if (!std::isfinite(value)) return value;
+    const std::string text = fmt::format("{}", value);
+    double shortest = value;
+    std::from_chars(text.data(), text.data() + text.size(), shortest);
+    return static_cast<float>(shortest) == value ? shortest : value;
+}
+
+}  // namespace
+
 json toJson(const ParameterValue& value) {
     struct Writer {
         json operator()(bool v) const { return v; }
         json operator()(int v) const { return v; }
-        json operator()(float v) const { return v; }
-        json operator()(const Vec3& v) const { return json::array({v.x, v.y, v.z}); }
+        json operator()(float v) const { return written(v); }
+        json operator()(const Vec3& v) const { return json::array({written(v.x), written(v.y), written(v.z)}); }
         json operator()(const std::string& v) const { return v; }
     };
     return std::visit(Writer{}, value);
@@ -29,7 +44,9 @@ ParameterValue parameterFromJson(const ParameterInfo& info, const json& j, const
             if (!j.is_number()) refuse("a number");
             return j.get<float>();
         case ParameterType::Integer:
-            if (!j.is_number_integer()) refuse("a whole number");
+            if (!j.is_number_integer() || (j.is_number_unsigned() && j.get<uint64_t>() > INT32_MAX) ||
+                j.get<int64_t>() < INT32_MIN)
+                refuse("a whole number of 32 bits");
             return j.get<int>();
         case ParameterType::Toggle:
             if (!j.is_boolean()) refuse("true or false");
