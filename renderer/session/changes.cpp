@@ -35,7 +35,8 @@ bool objectsMove(const PosedScene& posed) {
 /// Which parts of the scene the documents' edits changed: a value that went there and back did not change.
 void addEdits(const Document& before, const Document& now, Changes& changes) {
     if (before.scene() == now.scene()) return;
-    for (const auto& [id, value] : Document::difference(before, now).items()) {
+    const nlohmann::json edits = Document::difference(before, now);
+    for (const auto& [id, value] : edits.items()) {
         const bool material = id.compare(0, 9, "material.") == 0;
         changes.materials |= material;
         changes.lights |= id.compare(0, 6, "light.") == 0 || id.compare(0, 12, "environment.") == 0 ||

@@ -71,6 +71,8 @@ public:
     /// `scene.index` and `scene.variant` only take effect by loading again.
     Redo set(const std::string& id, const ParameterValue& value, const std::string& where = "");
     Redo setText(const std::string& id, const std::string& text, const std::string& where = "");
+    /// Takes the sky of another document of the same scene.
+    void adoptEnvironment(const Document& other);
     void setTime(float seconds) { time_ = seconds; }
     ParameterValue get(const std::string& id) const;
     ParameterValue initial(const std::string& id) const;  ///< before any change: what "reset" goes back to

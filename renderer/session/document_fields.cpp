@@ -129,6 +129,10 @@ Scene& DocumentFields::edit(Document& document) {
     return *scene;
 }
 
+void Document::adoptEnvironment(const Document& other) {
+    DocumentFields::edit(*this).environment = other.edited_->environment;
+}
+
 void DocumentFields::addScene(const Document& document, const std::string& filter, std::vector<Group>& groups) {
     if (concerns("scene.", filter)) {
         auto copy = std::make_shared<std::pair<int, std::string>>(document.sceneIndex_, document.sceneVariant_);

@@ -24,6 +24,7 @@ public:
     static std::vector<Group> groups(const Document& document, const std::string& filter);
 
 private:
+    friend class Document;
     static void addSettings(const Document&, const std::string& filter, std::vector<Group>&);
     static void addCamera(const Document&, const std::string& filter, std::vector<Group>&);
     static void addScene(const Document&, const std::string& filter, std::vector<Group>&);

@@ -54,6 +54,8 @@ public:
     /// last completed one replaces it, seen from the same frame before; any other number but the next is a cut.
     std::optional<FrameOutput> advance(const FrameRequest& request, std::stop_token stop = {});
 
+    /// Rays of the frame being traced, for a progress bar; from any thread.
+    TraceCounts tracedSoFar() const { return tracer_.counts(); }
     /// Bytes of tracer, signals and modules.
     size_t byteCount() const;
 

@@ -106,6 +106,9 @@ public:
     void stepBack();              ///< draws the previous frame again, bit for bit, then pause
     void restart();               ///< frame 0, history forgotten
 
+    /// Frames that were begun and given up because something changed.
+    uint64_t abandonedFrames() const;
+
     /// Latest published snapshot; never null after the first frame, null before.
     std::shared_ptr<const Snapshot> snapshot() const;
 

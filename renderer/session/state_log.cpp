@@ -83,6 +83,10 @@ void StateLog::record(const FrameOutput& frame, std::shared_ptr<const Document> 
     forgetOldest();
 }
 
+void StateLog::redescribeLast(std::shared_ptr<const Document> document) {
+    if (!entries_.empty()) entries_.back().document = std::move(document);
+}
+
 size_t StateLog::startOf(size_t index) const {
     // Where no module keeps history the frame before is run all the same: motion refers to it.
     for (size_t i = index; i > 0; --i) {

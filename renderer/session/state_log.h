@@ -52,6 +52,8 @@ public:
 
     /// Adds a completed frame drawn from `document`; a frame of the last one's number takes its place.
     void record(const FrameOutput& frame, std::shared_ptr<const Document> document);
+    /// The last frame is shown otherwise: `document` differs from its own in that alone.
+    void redescribeLast(std::shared_ptr<const Document> document);
     bool empty() const { return entries_.empty(); }
     size_t size() const { return entries_.size(); }
     const Entry& entry(size_t index) const { return entries_[index]; }

@@ -1,0 +1,241 @@
+#include "session/session.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "reconstruct/catalog.h"
+#include "session/session_impl.h"
+#include "session/view_buffers.h"
+
+namespace lumi {
+
+Session::Impl::Impl(MessageLog& log_) : log(log_), engine(log_, FrameEngine::OnModuleError::ShowRawFrame) {
+    lowerWorkerPriority();
+    thread = std::jthread([this](std::stop_token quit) { loop(quit); });
+}
+
+Session::Impl::~Impl() {
+    {
+        std::lock_guard lock(mutex);
+        thread.request_stop();
+        frameStop.request_stop();
+        loadStop.request_stop();
+    }
+    wake.notify_all();
+    reapThreads(true);
+}
+
+Document& Session::Impl::requireDocument() {
+    if (!document) throwUsage({"no scene is open", "", "", ""});
+    return *document;
+}
+
+void Session::Impl::noteChange(Redo redo) {
+    ++revision;
+    pending = std::max(pending.value_or(redo), redo);
+    frameFailed = false;
+    if (redo >= Redo::Filter) abandonFrame();
+    wake.notify_all();
+}
+
+void Session::Impl::abandonFrame() {
+    if (!drawing || frameStop.stop_requested()) return;
+    // While changes keep coming (a camera is flown) every second frame may finish, else nothing would ever be seen.
+    constexpr double kLongMs = 1000;
+    if (guarded && expectedFrameMs < kLongMs) return;
+    frameStop.request_stop();
+}
+
+/// Puts a whole document in the present one's place; what that invalidates follows from what differs.
+void Session::Impl::replaceDocument(const Document& next) {
+    const nlohmann::json changes = Document::difference(*document, next);
+    Redo worst = Redo::Display;
+    for (const ParameterInfo& info : next.list())
+        if (changes.contains(info.id)) worst = std::max(worst, info.redo);
+    document = next;
+    noteChange(worst);
+}
+
+Session::Session(MessageLog& log) : impl_(std::make_unique<Impl>(log)) {}
+Session::~Session() = default;
+
+void Session::open(const std::filesystem::path& scene, int sceneIndex, const std::string& variant,
+                   std::vector<std::pair<std::string, std::string>> set) {
+    impl_->startLoading({scene, sceneIndex, variant, std::move(set)});
+}
+
+bool Session::hasScene() const {
+    std::lock_guard lock(impl_->mutex);
+    return impl_->document.has_value();
+}
+
+void Session::reload() {
+    Impl::Origin origin;
+    {
+        std::lock_guard lock(impl_->mutex);
+        origin = impl_->origin;
+    }
+    if (!origin.path.empty()) impl_->startLoading(origin);
+}
+
+void Session::cancelLoading() {
+    std::lock_guard lock(impl_->mutex);
+    impl_->loadStop.request_stop();
+    ++impl_->loadGeneration;
+    impl_->loading = {};
+}
+
+LoadStatus Session::loadStatus() const {
+    std::lock_guard lock(impl_->mutex);
+    return impl_->loading;
+}
+
+void Session::set(const std::string& id, const ParameterValue& value) { setAll({{id, value}}); }
+
+void Session::setText(const std::string& id, const std::string& text) {
+    ParameterValue value;
+    {
+        std::lock_guard lock(impl_->mutex);
+        Document copy = impl_->requireDocument();
+        if (id == "environment.file") value = text;
+        else {
+            copy.setText(id, text);
+            value = copy.get(id);
+        }
+    }
+    set(id, value);
+}
+
+void Session::setAll(const std::vector<std::pair<std::string, ParameterValue>>& values) {
+    std::unique_lock lock(impl_->mutex);
+    Document next = impl_->requireDocument();
+    Redo worst = Redo::Display;
+    std::string ids;
+    std::optional<std::string> environmentFile;
+    for (const auto& [id, value] : values) {
+        ids += id + ' ';
+        const std::string* file = std::get_if<std::string>(&value);
+        if (id == "environment.file" && file && !file->empty()) environmentFile = *file;
+        else worst = std::max(worst, next.set(id, value));
+        impl_->timeEdited |= id == "time";
+    }
+    const bool reload = next.sceneIndex() != impl_->document->sceneIndex() ||
+                        next.sceneVariant() != impl_->document->sceneVariant();
+    Impl::Origin origin = impl_->origin;
+    if (!reload) {
+        impl_->history.begin(*impl_->document, ids);
+        impl_->document = std::move(next);
+        impl_->noteChange(worst);
+    } else {
+        origin.index = next.sceneIndex();
+        origin.variant = next.sceneVariant();
+    }
+    lock.unlock();
+    if (reload) impl_->startLoading(origin);
+    if (environmentFile) impl_->loadEnvironment(*environmentFile);
+}
+
+void Session::endEdit() {
+    std::lock_guard lock(impl_->mutex);
+    impl_->history.end();
+}
+
+Document Session::document() const {
+    std::lock_guard lock(impl_->mutex);
+    return impl_->requireDocument();
+}
+
+uint64_t Session::revision() const {
+    std::lock_guard lock(impl_->mutex);
+    return impl_->revision;
+}
+
+bool Session::undo() {
+    std::lock_guard lock(impl_->mutex);
+    if (!impl_->document) return false;
+    std::optional<Document> before = impl_->history.undo(*impl_->document);
+    if (before) impl_->replaceDocument(*before);
+    return before.has_value();
+}
+
+bool Session::redo() {
+    std::lock_guard lock(impl_->mutex);
+    if (!impl_->document) return false;
+    std::optional<Document> after = impl_->history.redo(*impl_->document);
+    if (after) impl_->replaceDocument(*after);
+    return after.has_value();
+}
+
+void Session::setRendering(bool on) {
+    std::lock_guard lock(impl_->mutex);
+    impl_->rendering = on;
+    impl_->wake.notify_all();
+}
+
+bool Session::rendering() const {
+    std::lock_guard lock(impl_->mutex);
+    return impl_->rendering;
+}
+
+void Session::setPlaying(bool on) {
+    std::lock_guard lock(impl_->mutex);
+    impl_->playing = on;
+    impl_->wake.notify_all();
+}
+
+bool Session::playing() const {
+    std::lock_guard lock(impl_->mutex);
+    return impl_->playing;
+}
+
+void Session::step() {
+    std::lock_guard lock(impl_->mutex);
+    impl_->rendering = false;
+    impl_->stepWanted = true;
+    impl_->wake.notify_all();
+}
+
+void Session::stepBack() {
+    std::lock_guard lock(impl_->mutex);
+    impl_->rendering = false;
+    ++impl_->stepsBack;
+    if (impl_->drawing) impl_->frameStop.request_stop();
+    impl_->wake.notify_all();
+}
+
+void Session::restart() {
+    std::lock_guard lock(impl_->mutex);
+    impl_->restartWanted = true;
+    impl_->frameStop.request_stop();
+    impl_->wake.notify_all();
+}
+
+uint64_t Session::abandonedFrames() const {
+    std::lock_guard lock(impl_->mutex);
+    return impl_->abandoned;
+}
+
+std::shared_ptr<const Snapshot> Session::snapshot() const {
+    std::lock_guard lock(impl_->mutex);
+    return impl_->snapshot;
+}
+
+void Session::saveView(int view, const std::filesystem::path& path) {
+    if (!snapshot()) return impl_->log.error(path.string() + ": there is no picture yet");
+    std::lock_guard lock(impl_->mutex);
+    impl_->saves.push_back({view, path});
+    impl_->wake.notify_all();
+}
+
+std::string Session::stateJson() const {
+    StateLog states;
+    {
+        std::lock_guard lock(impl_->mutex);
+        states = impl_->states;
+    }
+    return states.empty() ? "{}" : states.json(OutputChoice{0, "all", false}.json());
+}
+
+}  // namespace lumi
