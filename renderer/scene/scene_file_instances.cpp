@@ -20,13 +20,17 @@ std::vector<InstanceEntry> readNames(SceneFileContext& context, const JsonValue&
     if (!section.isArray()) refuseValue(context.tree, section, "instances", "an array");
     std::vector<InstanceEntry> entries;
     std::map<std::string, size_t> byName;
+    std::map<std::string, int> numbers;
     for (const JsonValue& item : section.items) {
         ObjectReader reader(context.tree, item, "instances");
         const std::string asset = reader.text("asset").value_or("group");
         InstanceEntry entry{&item, reader.text("name").value_or(""), reader.find("parent"), -1};
-        const bool named = !entry.name.empty();
-        for (int number = 1; entry.name.empty() || (!named && byName.contains(entry.name)); ++number)
-            entry.name = number == 1 && !byName.contains(asset) ? asset : fmt::format("{}-{}", asset, number);
+        // Nameless ones are numbered: "ball", "ball-2", "ball-3".
+        while (entry.name.empty()) {
+            const int number = ++numbers[asset];
+            const std::string name = number == 1 ? asset : fmt::format("{}-{}", asset, number);
+            if (!byName.contains(name)) entry.name = name;
+        }
         if (!byName.emplace(entry.name, entries.size()).second)
             reader.fail(reader.find("name")->at, fmt::format("two instances are named \"{}\"", entry.name));
         entries.push_back(std::move(entry));

@@ -1,0 +1,129 @@
+#include "scene/defaults.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scene/procedural/primitives.h"
+#include "scene/sky.h"
+
+namespace lumi::test {
+namespace {
+
+/// One mesh at a place.
+Scene sceneOf(Mesh mesh, const Vec3& at = Vec3(0)) {
+    Scene scene;
+    scene.path = "made.obj";
+    scene.materials.emplace_back();
+    scene.nodes.emplace_back();
+    scene.nodes[0].local.translation = at;
+    scene.instances.push_back({"it", std::make_shared<const Mesh>(std::move(mesh)), 0, -1, -1, -1});
+    return scene;
+}
+
+TEST(DefaultCamera, StandsInsideRooms) {
+    // Along the longer horizontal axis, at the centre.
+    const Camera alongX = defaultCamera(sceneOf(boxMesh({8, 3, 4}), {1, 2, 3}));
+    EXPECT_EQ(alongX.name, "default");
+    EXPECT_EQ(alongX.fovYDeg, 45);
+    EXPECT_LT(glm::distance(alongX.eye, Vec3(1, 2, 3)), 1e-5f);
+    EXPECT_GT(std::abs(glm::normalize(alongX.target - alongX.eye).x), 0.9999f);
+    const Camera alongZ = defaultCamera(sceneOf(boxMesh({4, 30, 8})));
+    EXPECT_GT(std::abs(glm::normalize(alongZ.target - alongZ.eye).z), 0.9999f);
+}
+
+TEST(DefaultCamera, FramesWhatIsNotARoom) {
+    // A floor seen from its own centre encloses nothing; every corner must be in a square image, and fill most of it.
+    for (const Vec3& at : {Vec3(0), Vec3(100, -20, 7)}) {
+        const Scene scene = sceneOf(rectangleMesh(4, 2, Facing::Y), at);
+        const Camera camera = defaultCamera(scene);
+        EXPECT_LT(glm::distance(camera.target, at), 1e-4f);
+        const CameraPose pose = poseCamera(camera, {100, 100});
+        float widest = 0;
+        for (const Vec3& p : scene.instances[0].mesh->positions) {
+            const Vec3 pixel = pose.project(p + at);
+            EXPECT_GT(pixel.z, 0);
+            widest = std::max({widest, std::abs(pixel.x - 50), std::abs(pixel.y - 50)});
+        }
+        EXPECT_LT(widest, 50);
+        EXPECT_GT(widest, 35);
+    }
+}
+
+TEST(DefaultCamera, EnclosureCountsDirections) {
+    EXPECT_EQ(enclosure(sceneOf(boxMesh(Vec3(2))), Vec3(0)), 1);
+    EXPECT_EQ(enclosure(sceneOf(boxMesh(Vec3(2))), Vec3(5, 0, 0)) > 0.3f, false);
+    EXPECT_EQ(enclosure(Scene(), Vec3(0)), 0);
+    // A wide floor below covers half of all directions.
+    EXPECT_NEAR(enclosure(sceneOf(rectangleMesh(1000, 1000, Facing::Y)), Vec3(0, 1, 0)), 0.5f, 0.05f);
+}
+
+TEST(DefaultCamera, EmptyScenesGetOneToo) {
+    const Camera camera = defaultCamera(Scene());
+    EXPECT_NE(camera.eye, camera.target);
+}
+
+TEST(Defaults, DarkScenesGetTheSkyAndAWarning) {
+    MessageLog log;
+    Scene dark = sceneOf(boxMesh(Vec3(1)));
+    addDefaults(dark, log, true);
+    EXPECT_TRUE(dark.environment.visible());
+    ASSERT_EQ(log.warnings().size(), 1u);
+    EXPECT_EQ(log.warnings()[0], "made.obj: no light and no emission; lit by the built-in sky");
+
+    Scene glowing = sceneOf(boxMesh(Vec3(1)));
+    glowing.materials[0].emission = Vec3(1);
+    addDefaults(glowing, log, true);
+    EXPECT_FALSE(glowing.environment.visible());
+
+    // Emission that nothing wears does not count; our own files are dark when they say so.
+    Scene unused = sceneOf(boxMesh(Vec3(1)));
+    unused.materials.emplace_back();
+    unused.materials[1].emission = Vec3(1);
+    EXPECT_FALSE(hasLight(unused));
+    addDefaults(unused, log, false);
+    EXPECT_FALSE(unused.environment.visible());
+}
+
+double meanLuminance(const Image& sky) {
+    double sum = 0, weights = 0;
+    for (int y = 0; y < sky.height(); ++y) {
+        const double weight = std::sin(3.14159265358979 * (y + 0.5) / sky.height());
+        for (int x = 0; x < sky.width(); ++x) {
+            sum += weight * luminance({sky.at(0, x, y), sky.at(1, x, y), sky.at(2, x, y)});
+            weights += weight;
+        }
+    }
+    return sum / weights;
+}
+
+TEST(DefaultSky, HasMeanRadianceOne) {
+    EXPECT_NEAR(meanLuminance(makeDefaultSky()), 1, 1e-3);
+    Sky bright;
+    bright.radiance = 7;
+    bright.sunShare = 0;
+    EXPECT_NEAR(meanLuminance(bright.build()), 7, 7e-3);
+}
+
+TEST(DefaultSky, TheSunStandsWhereItIsPut) {
+    Sky sky;
+    sky.sunElevationDeg = 30;
+    sky.sunAzimuthDeg = 90;  // from +Z towards +X
+    sky.sunShare = 0.9f;
+    const Image image = sky.build();
+    Vec3 brightest(0);
+    float most = 0;
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x)
+            if (image.at(0, x, y) > most) {
+                most = image.at(0, x, y);
+                // Image centre is -Z, u grows towards +X, row 0 is up.
+                const float phi = 2 * kPi * (static_cast<float>(x) + 0.5f) / static_cast<float>(image.width()) - kPi;
+                const float theta = kPi * (static_cast<float>(y) + 0.5f) / static_cast<float>(image.height());
+                brightest = {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
+            }
+    EXPECT_GT(glm::dot(brightest, Vec3(std::cos(radians(30)), 0.5f, 0)), 0.999f);
+}
+
+}  // namespace
+}  // namespace lumi::test

@@ -1,0 +1,166 @@
+#include "scene/load.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "base/files.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace lumi::test {
+namespace {
+namespace fs = std::filesystem;
+
+/// Sets $LUMISCOPE_SCENES while it lives.
+class ScenesVariable {
+public:
+    explicit ScenesVariable(const std::string& value) { setenv("LUMISCOPE_SCENES", value.c_str(), 1); }
+    ~ScenesVariable() { unsetenv("LUMISCOPE_SCENES"); }
+};
+
+/// A 2x1 Radiance file, flat scanlines: white and black.
+std::string tinyHdr() {
+    return std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n") + std::string("\x80\x80\x80\x81\0\0\0\0", 8);
+}
+
+TEST(LoadScene, UnknownKindsAreNamed) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "a.txt", std::string_view("x"));
+    MessageLog log;
+    expectError(ErrorKind::BadInput, [&] { loadScene(folder / "a.txt", log); },
+                {"unknown kind of scene; expected .json, .gltf, .glb, .obj, .hdr or .exr, found .txt"});
+    expectError(ErrorKind::BadInput, [&] { loadScene(folder.path(), log); }, {"is a directory"});
+    for (const char* name : {"no.json", "no.gltf", "no.glb", "no.obj", "no.hdr", "no.exr", "no.txt"})
+        expectError(ErrorKind::BadInput, [&] { loadScene(folder / name, log); }, {name, "no such file"});
+    fs::create_directory(folder / "d.json");
+    expectError(ErrorKind::BadInput, [&] { loadScene(folder / "d.json", log); }, {"d.json: is a directory"});
+}
+
+TEST(LoadScene, OurOwnFilesStayDarkButGetACamera) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "s.json", std::string_view(
+        R"({"version": 1, "assets": {"b": {"box": {}}}, "instances": [{"asset": "b"}]})"));
+    MessageLog log;
+    const auto scene = loadScene(folder / "s.json", log);
+    EXPECT_FALSE(scene->environment.visible());
+    EXPECT_TRUE(log.warnings().empty());
+    ASSERT_EQ(scene->cameras.size(), 1u);
+    EXPECT_EQ(scene->cameras[0].camera.name, "default");
+    EXPECT_EQ(scene->path, (folder / "s.json").string());
+}
+
+TEST(LoadScene, FilesAreSoughtBesideTheSceneFile) {
+    TemporaryFolder folder;
+    fs::create_directory(folder / "sub");
+    writeFileAtomically(folder / "sub/sky.hdr", tinyHdr());
+    writeFileAtomically(folder / "s.json", std::string_view(R"({"version": 1, "environment": {"file": "sub/sky.hdr"}})"));
+    MessageLog log;
+    const auto scene = loadScene(folder / "s.json", log);
+    ASSERT_NE(scene->environment.image, nullptr);
+    EXPECT_EQ(scene->environment.image->width(), 2);
+    EXPECT_EQ(scene->environment.image->at(0, 0, 0), 1);
+
+    const std::string digestBefore = scene->contentDigest;
+    std::string changed = tinyHdr();
+    changed.back() = 1;
+    writeFileAtomically(folder / "sub/sky.hdr", changed);
+    EXPECT_NE(loadScene(folder / "s.json", log)->contentDigest, digestBefore);
+}
+
+TEST(LoadScene, AnEnvironmentMapLightsMaterialBalls) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "dusk.hdr", tinyHdr());
+    MessageLog log;
+    const auto scene = loadScene(folder / "dusk.hdr", log);
+    EXPECT_EQ(scene->title, "Material balls under dusk.hdr");
+    EXPECT_EQ(scene->instances.size(), 4u);
+    EXPECT_EQ(scene->environment.image->height(), 1);
+    EXPECT_TRUE(log.warnings().empty());
+    writeFileAtomically(folder / "broken.hdr", std::string_view("#?RADIANCE\n"));
+    expectError(ErrorKind::BadInput, [&] { loadScene(folder / "broken.hdr", log); }, {"broken.hdr"});
+}
+
+TEST(LoadScene, ReportsItsProgressUpToTheEnd) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "s.json", std::string_view(R"({"version": 1})"));
+    float last = -1;
+    LoadOptions options;
+    options.progress = [&](float fraction, const std::string&) {
+        EXPECT_GE(fraction, last);
+        last = fraction;
+    };
+    MessageLog log;
+    loadScene(folder / "s.json", log, options);
+    EXPECT_EQ(last, 1);
+}
+
+TEST(LoadScene, AnyThreadCountGivesTheSameScene) {
+    MessageLog log;
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "s.json", std::string_view(R"({"version": 1,
+        "assets": {"a": {"hairball": {"strands": 500}}, "b": {"torus": {}}}, "instances": [{"asset": "a"}, {"asset": "b"}]})"));
+    const auto one = loadScene(folder / "s.json", log), two = loadScene(folder / "s.json", log);
+    ASSERT_EQ(one->instances.size(), two->instances.size());
+    for (size_t i = 0; i < one->instances.size(); ++i)
+        EXPECT_TRUE(one->instances[i].mesh->positions == two->instances[i].mesh->positions);
+    EXPECT_EQ(one->contentDigest, two->contentDigest);
+}
+
+TEST(FindScene, TakesPathsAsTheyAre) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "x.json", std::string_view("{}"));
+    EXPECT_EQ(findScene((folder / "x.json").string()), folder / "x.json");
+    expectError(ErrorKind::BadInput, [&] { findScene((folder / "y.json").string()); }, {"y.json: no such file"});
+    expectError(ErrorKind::BadInput, [&] { findScene(folder.path().string()); }, {"is a directory"});
+    expectError(ErrorKind::BadInput, [] { findScene("y.glb"); }, {"y.glb: no such file"});
+    expectError(ErrorKind::BadInput, [] { findScene(""); }, {"no such file"});
+}
+
+TEST(FindScene, SeeksNamesInTheVariablesFoldersFirst) {
+    TemporaryFolder a, b;
+    writeFileAtomically(a / "mine.json", std::string_view(R"({"version": 1, "title": "Mine"})"));
+    writeFileAtomically(b / "mine.json", std::string_view("{}"));
+    writeFileAtomically(b / "other.json", std::string_view("broken"));
+    writeFileAtomically(b / "scene.schema.json", std::string_view("{}"));
+    const ScenesVariable variable(a.path().string() + ":/nonexistent::" + b.path().string());
+    EXPECT_EQ(findScene("mine"), a / "mine.json");
+    EXPECT_EQ(findScene("other"), b / "other.json");
+    expectError(ErrorKind::Usage, [] { findScene("othr"); }, {"unknown scene \"othr\"; expected \"other\""});
+
+    std::string mine, other;
+    for (const SceneEntry& entry : listScenes()) {
+        EXPECT_EQ(entry.name.find("schema"), std::string::npos);
+        if (entry.name == "mine") mine = entry.title;
+        if (entry.name == "other") other = entry.title;
+    }
+    EXPECT_EQ(mine, "Mine");
+    EXPECT_EQ(other, "other") << "a broken file is listed by its name";
+}
+
+TEST(FindScene, BuiltInScenesComeFirstInTheirOrder) {
+    std::vector<std::string> expected;
+    for (const char* name : {"cornell", "room", "atrium", "still-life", "parade"})
+        if (fs::exists(fs::path(LUMISCOPE_SOURCE_DIR) / "scenes" / (std::string(name) + ".json")))
+            expected.emplace_back(name);
+    const std::vector<SceneEntry> scenes = listScenes();
+    ASSERT_GE(scenes.size(), expected.size());
+    for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(scenes[i].name, expected[i]);
+}
+
+TEST(LoadScene, EveryBuiltInSceneLoads) {
+    for (const SceneEntry& entry : listScenes()) {
+        MessageLog log;
+        const auto scene = loadScene(entry.path, log);
+        EXPECT_GT(scene->triangleCount(), 0) << entry.name;
+        EXPECT_TRUE(log.warnings().empty()) << entry.name << ": " << log.warnings()[0];
+        EXPECT_NE(entry.title, entry.name) << "a built-in scene has a title";
+    }
+}
+
+}  // namespace
+}  // namespace lumi::test
