@@ -77,7 +77,8 @@ std::string allNames() {
 }  // namespace
 
 const std::vector<const char*>& colourMapNames() {
-    static const std::vector<const char*> names = {"viridis", "turbo", "magma", "gray", "signed", "cyclic", "ids", "wheel"};
+    static const std::vector<const char*> names = {"viridis", "turbo",  "magma", "gray",
+                                                   "signed",  "cyclic", "ids",   "wheel"};
     return names;
 }
 

@@ -14,10 +14,11 @@ enum class ToneCurve { Clamp, Reinhard, Aces, AgX };
 struct DisplaySettings {
     float exposureEv = 0;
     ToneCurve curve = ToneCurve::Aces;
-    std::string colourMap = "auto";  ///< "auto" (the buffer's own), "none", "viridis", "turbo", "magma", "signed", "cyclic", "ids", "gray"
-    bool autoRange = true;           ///< 1st to 99th percentile of finite values
+    std::string colourMap =
+        "auto";  ///< "auto" (the buffer's own), "none", "viridis", "turbo", "magma", "signed", "cyclic", "ids", "gray"
+    bool autoRange = true;  ///< 1st to 99th percentile of finite values
     float low = 0, high = 1;
-    int channel = -1;                ///< -1 all, 0.. one channel
+    int channel = -1;  ///< -1 all, 0.. one channel
 
     void describe(ParameterVisitor&);
 };
@@ -27,7 +28,8 @@ struct DisplayInfo {
     bool falseColour = false;
     std::string colourMap;
     float low = 0, high = 1;
-    int64_t nonFinite = 0;  ///< pixels with NaN or infinity (NaN shows magenta, infinity cyan; +inf depth is the sky, black)
+    int64_t nonFinite =
+        0;  ///< pixels with NaN or infinity (NaN shows magenta, infinity cyan; +inf depth is the sky, black)
 };
 
 /// RGBA8 of a buffer. `channels` is SignalInfo::channels ("RGB", "XYZ", "Y", ...); `defaultMap` is used for "auto".

@@ -25,8 +25,14 @@ struct DisplayKernels {
 /// For the instruction set in use.
 const DisplayKernels& displayKernels();
 
-namespace baseline { const DisplayKernels& displayTable(); }
-namespace v3 { const DisplayKernels& displayTable(); }
-namespace v4 { const DisplayKernels& displayTable(); }
+namespace baseline {
+const DisplayKernels& displayTable();
+}
+namespace v3 {
+const DisplayKernels& displayTable();
+}
+namespace v4 {
+const DisplayKernels& displayTable();
+}
 
 }  // namespace lumi

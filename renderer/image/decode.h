@@ -14,7 +14,8 @@ Extent2 encodedExtent(std::span<const uint8_t> bytes, const std::string& name);
 
 /// Pixels of an encoded PNG, JPEG, BMP or TGA as stored (no colour conversion; 16-bit values lose their low byte; no
 /// alpha channel gives 255). `name` heads messages. Safe on several threads at once.
-/// Throws Error(BadInput): unknown format, damaged, larger than kMaxDecodedSide; Error(Resources) beyond the memory limit.
+/// Throws Error(BadInput): unknown format, damaged, larger than kMaxDecodedSide; Error(Resources) beyond the memory
+/// limit.
 Image8 decodeImage8(std::span<const uint8_t> bytes, const std::string& name);
 
 }  // namespace lumi

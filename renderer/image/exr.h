@@ -24,15 +24,15 @@ struct ExrChannel {
 /// The contents of a single-part OpenEXR file: channels by their full names ("R", "Z", "albedo.R", "motion.X",
 /// "objectId", "svgf-historyLength.Y") and attributes.
 struct ExrLayers {
-    Extent2 extent;                             ///< display window
+    Extent2 extent;                              ///< display window
     std::map<std::string, ExrChannel> channels;  ///< in the order of the file: by name
     std::map<std::string, std::string> strings;  ///< string attributes; our state as JSON is under kStateKey
     std::optional<Mat4> worldToCamera, worldToNdc;
     float pixelAspect = 1;
 
-    /// Adds the channels of `image` as `layer`.`letter`, one letter each of `letters` ("RGB", "XYZ", "Y", "Z"); an empty
-    /// `layer` names them by the letter alone. An id image of one channel is named by the layer alone ("objectId").
-    /// The first image gives the extent; the others have the same.
+    /// Adds the channels of `image` as `layer`.`letter`, one letter each of `letters` ("RGB", "XYZ", "Y", "Z"); an
+    /// empty `layer` names them by the letter alone. An id image of one channel is named by the layer alone
+    /// ("objectId"). The first image gives the extent; the others have the same.
     void add(std::string_view layer, std::string_view letters, const Image& image, ExrType type = ExrType::Float);
     void addIds(std::string_view layer, std::string_view letters, const IdImage& image);
 

@@ -12,31 +12,31 @@ struct Alias {
     const char* ours;
 };
 const Alias kLayerAliases[] = {
-    {"Combined", ""},                  // Blender, Open Image Denoise
+    {"Combined", ""},  // Blender, Open Image Denoise
     {"Beauty", ""},
     {"Composite.Combined", ""},
-    {"Noisy Image", "noisy"},          // Blender
-    {"Albedo", "albedo"},              // pbrt
-    {"Denoising Albedo", "albedo"},    // Blender
+    {"Noisy Image", "noisy"},        // Blender
+    {"Albedo", "albedo"},            // pbrt
+    {"Denoising Albedo", "albedo"},  // Blender
     {"VisibleDiffuse", "albedo"},
     {"diffuse", "albedo"},
     {"DiffCol", "albedo"},
-    {"Ns", "normal"},                  // pbrt, shading
-    {"Denoising Normal", "normal"},    // Blender
+    {"Ns", "normal"},                // pbrt, shading
+    {"Denoising Normal", "normal"},  // Blender
     {"Normals", "normal"},
     {"Normal", "normal"},
-    {"nn", "normal"},                  // Mitsuba
-    {"N", "normal"},                   // pbrt, geometric
-    {"Denoising Depth", "depth"},      // Blender
+    {"nn", "normal"},              // Mitsuba
+    {"N", "normal"},               // pbrt, geometric
+    {"Denoising Depth", "depth"},  // Blender
     {"Depth", "depth"},
-    {"dd", "depth"},                   // Mitsuba
-    {"P", "position"},                 // pbrt
-    {"worldPosition", "position"},     // OSPRay Studio
-    {"Position", "position"},          // Blender
-    {"Vector", "motion"},              // Blender
-    {"mvec", "motion"},                // Falcor
+    {"dd", "depth"},                // Mitsuba
+    {"P", "position"},              // pbrt
+    {"worldPosition", "position"},  // OSPRay Studio
+    {"Position", "position"},       // Blender
+    {"Vector", "motion"},           // Blender
+    {"mvec", "motion"},             // Falcor
     {"variance", "sampleVariance"},
-    {"Variance", "sampleVariance"},    // pbrt
+    {"Variance", "sampleVariance"},  // pbrt
     {"RelativeVariance", "relativeVariance"},
 };
 const Alias kChannelAliases[] = {{"id", "objectId"}};
@@ -73,8 +73,8 @@ Resolved resolve(std::string_view name) {
     for (size_t i = 0; i < kLayerAliasCount; ++i) {
         // "ViewLayer.Combined.R": a layer below another one counts by its last part.
         const std::string_view theirs = kLayerAliases[i].theirs;
-        const bool nested = layer.size() > theirs.size() && layer.ends_with(theirs) &&
-                            layer[layer.size() - theirs.size() - 1] == '.';
+        const bool nested =
+            layer.size() > theirs.size() && layer.ends_with(theirs) && layer[layer.size() - theirs.size() - 1] == '.';
         if (layer != theirs && !nested) continue;
         const std::string ours = kLayerAliases[i].ours;
         const std::string letter = componentFor(ours, component);
@@ -87,7 +87,9 @@ Resolved resolve(std::string_view name) {
 
 }  // namespace
 
-std::string canonicalChannel(std::string_view name) { return resolve(name).name; }
+std::string canonicalChannel(std::string_view name) {
+    return resolve(name).name;
+}
 
 const ExrChannel* ExrLayers::find(std::string_view name) const {
     if (const auto exact = channels.find(std::string(name)); exact != channels.end()) return &exact->second;

@@ -93,7 +93,8 @@ std::vector<uint8_t> encodeExr(const ExrLayers& layers, bool halfColours) {
         file.setFrameBuffer(buffer);
         file.writePixels(layers.extent.height);
     } catch (const std::exception& failure) {
-        throw Error(ErrorKind::Usage, {std::string("cannot be stored as OpenEXR (") + failure.what() + ")", "", "", ""});
+        throw Error(ErrorKind::Usage,
+                    {std::string("cannot be stored as OpenEXR (") + failure.what() + ")", "", "", ""});
     }
     return stream.take();
 }

@@ -81,7 +81,8 @@ private:
         const std::string line = textLine();
         char sign[2] = {}, axis[2] = {};
         int size[2] = {};
-        if (std::sscanf(line.c_str(), "%c%c %d %c%c %d", &sign[0], &axis[0], &size[0], &sign[1], &axis[1], &size[1]) != 6 ||
+        if (std::sscanf(line.c_str(), "%c%c %d %c%c %d", &sign[0], &axis[0], &size[0], &sign[1], &axis[1], &size[1]) !=
+                6 ||
             !((axis[0] == 'Y' && axis[1] == 'X') || (axis[0] == 'X' && axis[1] == 'Y')))
             throwBadInput({"Radiance file has no resolution line", name_, "\"-Y 512 +X 1024\"", '"' + line + '"'});
         if (size[0] < 1 || size[1] < 1 || size[0] > kMaxSide || size[1] > kMaxSide)
@@ -151,6 +152,8 @@ private:
 
 }  // namespace
 
-Image decodeHdr(std::span<const uint8_t> bytes, const std::string& name) { return HdrReader(bytes, name).read(); }
+Image decodeHdr(std::span<const uint8_t> bytes, const std::string& name) {
+    return HdrReader(bytes, name).read();
+}
 
 }  // namespace lumi

@@ -24,7 +24,7 @@ void writePng(const std::filesystem::path& path, const Image8& image, const PngT
 /// A PNG of any kind as 16-bit RGBA, interleaved, top row first; 8-bit values are scaled by 257.
 struct Png {
     Extent2 extent;
-    int bitDepth = 8;   ///< of the file: 8 (also for fewer) or 16
+    int bitDepth = 8;    ///< of the file: 8 (also for fewer) or 16
     bool alpha = false;  ///< the file has an alpha channel or a transparent colour
     std::vector<uint16_t> rgba;
     PngTexts texts;

@@ -66,7 +66,8 @@ public:
         result.rgba.resize(count);
         std::vector<png_bytep> rows(static_cast<size_t>(result.extent.height));
         for (size_t y = 0; y < rows.size(); ++y)
-            rows[y] = reinterpret_cast<png_bytep>(result.rgba.data() + y * 4 * static_cast<size_t>(result.extent.width));
+            rows[y] =
+                reinterpret_cast<png_bytep>(result.rgba.data() + y * 4 * static_cast<size_t>(result.extent.width));
         if (!readPixels(rows.data())) fail();
         result.texts = texts();
         return result;
@@ -127,8 +128,14 @@ Image8 Png::image8() const {
     return image;
 }
 
-Png decodePng(std::span<const uint8_t> bytes, const std::string& name) { return Reader(bytes, name).read(); }
-Png readPng(const std::filesystem::path& path) { return decodePng(readFile(path), path.string()); }
-PngTexts readPngTexts(const std::filesystem::path& path) { return Reader(readFile(path), path.string()).readTexts(); }
+Png decodePng(std::span<const uint8_t> bytes, const std::string& name) {
+    return Reader(bytes, name).read();
+}
+Png readPng(const std::filesystem::path& path) {
+    return decodePng(readFile(path), path.string());
+}
+PngTexts readPngTexts(const std::filesystem::path& path) {
+    return Reader(readFile(path), path.string()).readTexts();
+}
 
 }  // namespace lumi

@@ -12,8 +12,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
-#include <cstdlib>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 #include "base/error.h"
@@ -88,9 +88,10 @@ VideoPipe::VideoPipe(const fs::path& path, Extent2 extent, double fps) : path_(p
     std::error_code ignored;
     if (fs::exists(path, ignored)) throwUsage({"exists already", path.string(), "a new file", ""});
     if (!available())
-        throwUsage({"writing video needs the ffmpeg program, which is not installed; install the package ffmpeg, or "
-                    "write PNG frames (--out frame-%04d.png)",
-                    path.string(), "", ""});
+        throwUsage(
+            {"writing video needs the ffmpeg program, which is not installed; install the package ffmpeg, or "
+             "write PNG frames (--out frame-%04d.png)",
+             path.string(), "", ""});
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), ignored);
 
     // A socket rather than a pipe: writing to one whose reader is gone can be told not to raise SIGPIPE.
@@ -100,7 +101,8 @@ VideoPipe::VideoPipe(const fs::path& path, Extent2 extent, double fps) : path_(p
         fail(std::string("cannot start ffmpeg (") + std::strerror(errno) + ")");
     input_ = ends[0];
     // The extension chooses the container, so it stays last.
-    partial_ = path.parent_path() / fmt::format("{}.{}.part{}", path.stem().string(), getpid(), path.extension().string());
+    partial_ =
+        path.parent_path() / fmt::format("{}.{}.part{}", path.stem().string(), getpid(), path.extension().string());
     const int code = spawn(command(partial_, extent, fps), ends[1], messages_, process_);
     close(ends[1]);
     if (code != 0) {

@@ -17,7 +17,8 @@ inline void expectError(ErrorKind kind, const std::function<void()>& action,
     } catch (const Error& error) {
         EXPECT_EQ(error.exitCode(), static_cast<int>(kind)) << error.what();
         for (const std::string& part : parts)
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << '"' << part << "\" in: " << error.what();
+            EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
+                << '"' << part << "\" in: " << error.what();
     } catch (const std::exception& other) {
         ADD_FAILURE() << "threw something else: " << other.what();
     }

@@ -17,9 +17,13 @@ struct SampleObject {
     float inner = 3;
 
     void describe(ParameterVisitor& v) {
-        v.number("alpha", alpha, {.label = "Alpha", .min = 0.01, .max = 1, .scale = Scale::Log, .help = "Weight of the new value (eq. 1)"});
+        v.number(
+            "alpha", alpha,
+            {.label = "Alpha", .min = 0.01, .max = 1, .scale = Scale::Log, .help = "Weight of the new value (eq. 1)"});
         v.when(temporal, [&] {
-            v.integer("levels", levels, {.label = "Levels", .min = 1, .max = 8, .unit = "px", .help = "Iterations", .redo = Redo::History});
+            v.integer(
+                "levels", levels,
+                {.label = "Levels", .min = 1, .max = 8, .unit = "px", .help = "Iterations", .redo = Redo::History});
             v.when(filter == Filter::Box, [&] {
                 v.number("inner", inner, {.label = "Inner", .min = -10, .max = 10, .help = "Only with box"});
             });

@@ -33,7 +33,8 @@ TEST(Memory, TheLimitRefusesByName) {
     EXPECT_GT(limit, uint64_t(256) << 20);
     setMemoryLimit(residentBytes() + (uint64_t(10) << 20));
     checkMemory("something small", 1000);
-    expectError(ErrorKind::Resources, [] { checkMemory("the texture", uint64_t(1) << 30); }, {"the texture", "1.0 GiB"});
+    expectError(ErrorKind::Resources, [] { checkMemory("the texture", uint64_t(1) << 30); },
+                {"the texture", "1.0 GiB"});
     expectError(ErrorKind::Resources, [] { checkMemory("everything", ~uint64_t(0)); }, {"everything"});
     setMemoryLimit(1);
     expectError(ErrorKind::Resources, [] { checkMemory("a bit", 1); }, {"a bit"});

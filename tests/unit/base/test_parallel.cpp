@@ -61,7 +61,11 @@ TEST(Parallel, IndicesEachOnce) {
 TEST(Parallel, ExceptionsReachTheCaller) {
     for (const int threads : {1, 2}) {
         setThreadCount(threads);
-        EXPECT_THROW(parallelFor(100, [](int64_t i) { if (i == 57) throw std::runtime_error("57"); }), std::runtime_error);
+        EXPECT_THROW(parallelFor(100,
+                                 [](int64_t i) {
+                                     if (i == 57) throw std::runtime_error("57");
+                                 }),
+                     std::runtime_error);
     }
     setThreadCount(0);
     // The pool works on afterwards.
@@ -71,13 +75,17 @@ TEST(Parallel, ExceptionsReachTheCaller) {
 TEST(Parallel, AStopSkipsWhatHasNotBegun) {
     std::stop_source source;
     std::atomic<int> done = 0;
-    parallelFor(100000, [&](int64_t) {
-        if (++done == 10) source.request_stop();
-    }, source.get_token());
+    parallelFor(
+        100000,
+        [&](int64_t) {
+            if (++done == 10) source.request_stop();
+        },
+        source.get_token());
     EXPECT_GE(done, 10);
     EXPECT_LT(done, 1000);
     done = 0;
-    parallelFor(100, [&](int64_t) { ++done; }, source.get_token());
+    parallelFor(
+        100, [&](int64_t) { ++done; }, source.get_token());
     EXPECT_EQ(done, 0);
 }
 

@@ -25,7 +25,9 @@ std::vector<uint8_t> pixel(const Image8& image, int x, int y) {
     return {begin, begin + 4};
 }
 
-int levels(uint8_t a, float b) { return std::abs(static_cast<int>(a) - static_cast<int>(b * 255 + 0.5f)); }
+int levels(uint8_t a, float b) {
+    return std::abs(static_cast<int>(a) - static_cast<int>(b * 255 + 0.5f));
+}
 
 std::vector<Isa> machineIsas() {
     std::vector<Isa> list;
@@ -109,8 +111,8 @@ TEST(Display, EightBitColoursSurviveTheRoundTrip) {
 TEST(Display, InstructionSetsAndThreadsGiveTheSameBytes) {
     Image image = wideImage({257, 89});
     image.at(1, 5, 5) = kNan;
-    const std::pair<const char*, const char*> kinds[] = {{"RGB", "none"}, {"RGB", "viridis"}, {"XYZ", "none"},
-                                                         {"XYZ", "signed"}, {"XYZ", "wheel"}, {"XYZ", "cyclic"}};
+    const std::pair<const char*, const char*> kinds[] = {{"RGB", "none"},   {"RGB", "viridis"}, {"XYZ", "none"},
+                                                         {"XYZ", "signed"}, {"XYZ", "wheel"},   {"XYZ", "cyclic"}};
     for (const auto& [channels, map] : kinds)
         for (int curve = 0; curve < 4; ++curve) {
             DisplaySettings settings;
@@ -134,8 +136,8 @@ TEST(Display, NanIsMagentaAndInfinityCyan) {
     image.at(1, 1, 0) = kInfinity;
     image.at(2, 2, 0) = kInfinity;
     image.at(2, 3, 0) = -kInfinity;
-    for (const auto& [channels, map] : {std::pair("RGB", "none"), std::pair("RGB", "magma"), std::pair("XYZ", "none"),
-                                        std::pair("XYZ", "turbo")}) {
+    for (const auto& [channels, map] :
+         {std::pair("RGB", "none"), std::pair("RGB", "magma"), std::pair("XYZ", "none"), std::pair("XYZ", "turbo")}) {
         Image8 out;
         const DisplayInfo info = convert(image, channels, map, {}, out);
         EXPECT_EQ(info.nonFinite, 3) << map;

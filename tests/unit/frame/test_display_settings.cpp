@@ -16,7 +16,8 @@ TEST(DisplaySettings, EveryParameterIsDeclaredAndKeepsItsValue) {
         EXPECT_EQ(info.redo, Redo::Display) << info.id;
         EXPECT_FALSE(info.help.empty()) << info.id;
     }
-    EXPECT_EQ(ids, (std::vector<std::string>{"exposure", "tone-curve", "colour-map", "auto-range", "low", "high", "channel"}));
+    EXPECT_EQ(ids, (std::vector<std::string>{"exposure", "tone-curve", "colour-map", "auto-range", "low", "high",
+                                             "channel"}));
     setParameter(describe, "colour-map", std::string("turbo"));
     setParameter(describe, "tone-curve", std::string("agx"));
     setParameter(describe, "exposure", -2.5f);

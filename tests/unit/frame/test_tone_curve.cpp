@@ -53,7 +53,8 @@ TEST(ToneCurve, AgxMatricesAreInverse) {
     // Very saturated light loses its saturation as it grows: no channel is left behind.
     const Vec3 red = toneMap(Vec3(500, 0, 0), ToneCurve::AgX);
     EXPECT_GT(red.y, 0.2f);
-    EXPECT_GT(toneMap(Vec3(0.2f, 0.01f, 0.01f), ToneCurve::AgX).x, 2 * toneMap(Vec3(0.2f, 0.01f, 0.01f), ToneCurve::AgX).y);
+    EXPECT_GT(toneMap(Vec3(0.2f, 0.01f, 0.01f), ToneCurve::AgX).x,
+              2 * toneMap(Vec3(0.2f, 0.01f, 0.01f), ToneCurve::AgX).y);
 }
 
 void expectColour(const std::string& map, float t, const Vec3& wanted, float tolerance) {
@@ -97,7 +98,9 @@ TEST(ColourMaps, TablesAreSmoothAndComplete) {
         if (map == "ids") continue;
         for (size_t i = 1; i < table.size(); ++i)
             for (int shift = 0; shift < 24; shift += 8)
-                EXPECT_LE(std::abs(static_cast<int>(table[i] >> shift & 255) - static_cast<int>(table[i - 1] >> shift & 255)), 4)
+                EXPECT_LE(
+                    std::abs(static_cast<int>(table[i] >> shift & 255) - static_cast<int>(table[i - 1] >> shift & 255)),
+                    4)
                     << map << ' ' << i;
     }
     test::expectError(ErrorKind::Usage, [] { colourMapValue("jet", 0.5f); }, {"jet", "viridis"});

@@ -17,7 +17,8 @@ using test::expectError;
 
 /// 24-bit BMP of 2x1: blue-ish (1,2,3) and (4,5,6).
 std::vector<uint8_t> smallBmp() {
-    std::vector<uint8_t> bytes = {'B', 'M', 62, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 0, 1, 0, 24, 0};
+    std::vector<uint8_t> bytes = {'B', 'M', 62, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0,  40,
+                                  0,   0,   0,  2, 0, 0, 0, 1, 0, 0, 0,  1, 0, 24, 0};
     bytes.resize(54);
     bytes.insert(bytes.end(), {3, 2, 1, 6, 5, 4, 0, 0});
     return bytes;

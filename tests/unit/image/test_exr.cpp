@@ -86,7 +86,8 @@ TEST(Exr, SpecialValuesSurvive) {
 
 TEST(Exr, HalfStoresColoursOnly) {
     const ExrLayers read = decodeExr(encodeExr(someLayers({5, 5}), true), "memory.exr");
-    for (const char* name : {"R", "G", "B", "A", "albedo.G"}) EXPECT_EQ(read.channels.at(name).type, ExrType::Half) << name;
+    for (const char* name : {"R", "G", "B", "A", "albedo.G"})
+        EXPECT_EQ(read.channels.at(name).type, ExrType::Half) << name;
     for (const char* name : {"Z", "motion.X", "svgf-historyLength.Y"})
         EXPECT_EQ(read.channels.at(name).type, ExrType::Float) << name;
     EXPECT_EQ(read.channels.at("objectId").type, ExrType::Uint);
@@ -163,8 +164,10 @@ TEST(Exr, AbsurdSizesAreRefusedBeforeAllocation) {
     const std::vector<uint8_t> bytes = encodeExr(layers);
     const uint64_t before = peakResidentBytes();
     for (const char* window : {"dataWindow", "displayWindow"})
-        for (const auto& [x, y] : {std::pair(60000, 60000), std::pair(2000000000, 3), std::pair(3, 2000000000), std::pair(-5, 3)})
-            expectError(ErrorKind::BadInput, [&] { decodeExr(withWindow(bytes, window, x, y), "huge.exr"); }, {"huge.exr"});
+        for (const auto& [x, y] :
+             {std::pair(60000, 60000), std::pair(2000000000, 3), std::pair(3, 2000000000), std::pair(-5, 3)})
+            expectError(ErrorKind::BadInput, [&] { decodeExr(withWindow(bytes, window, x, y), "huge.exr"); },
+                        {"huge.exr"});
     EXPECT_LT(peakResidentBytes() - before, uint64_t(64) << 20);
 }
 

@@ -10,7 +10,8 @@ namespace lumi {
 namespace {
 using test::expectError;
 
-std::vector<uint8_t> hdrFile(const std::string& header, const std::string& resolution, const std::vector<uint8_t>& data) {
+std::vector<uint8_t> hdrFile(const std::string& header, const std::string& resolution,
+                             const std::vector<uint8_t>& data) {
     const std::string text = "#?RADIANCE\n" + header + "FORMAT=32-bit_rle_rgbe\n\n" + resolution + '\n';
     std::vector<uint8_t> bytes(text.begin(), text.end());
     bytes.insert(bytes.end(), data.begin(), data.end());
@@ -18,7 +19,8 @@ std::vector<uint8_t> hdrFile(const std::string& header, const std::string& resol
 }
 
 // 2x3 flat pixels; the red mantissa counts them, exponent 136 makes it the value.
-const std::vector<uint8_t> kFlat = {10, 1, 2, 136, 11, 1, 2, 136, 12, 1, 2, 136, 13, 1, 2, 136, 14, 1, 2, 136, 15, 1, 2, 136};
+const std::vector<uint8_t> kFlat = {10, 1, 2, 136, 11, 1, 2, 136, 12, 1, 2, 136,
+                                    13, 1, 2, 136, 14, 1, 2, 136, 15, 1, 2, 136};
 
 TEST(Hdr, FlatPixelsInEveryOrientation) {
     const auto reds = [](const std::string& resolution) {
@@ -36,7 +38,8 @@ TEST(Hdr, FlatPixelsInEveryOrientation) {
 }
 
 TEST(Hdr, ExponentsExposureAndBlack) {
-    const Image image = decodeHdr(hdrFile("EXPOSURE=2\nEXPOSURE=2\n", "-Y 1 +X 2", {128, 64, 0, 129, 255, 255, 255, 0}), "x.hdr");
+    const Image image =
+        decodeHdr(hdrFile("EXPOSURE=2\nEXPOSURE=2\n", "-Y 1 +X 2", {128, 64, 0, 129, 255, 255, 255, 0}), "x.hdr");
     EXPECT_EQ(image.at(0, 0, 0), 0.25f);  // 128 * 2^-7 / 4
     EXPECT_EQ(image.at(1, 0, 0), 0.125f);
     EXPECT_EQ(image.at(0, 1, 0), 0.0f);
@@ -61,11 +64,20 @@ TEST(Hdr, DamageIsRefusedByName) {
     const std::vector<uint8_t> whole = hdrFile("", "-Y 3 +X 2", kFlat);
     for (size_t size = 0; size < whole.size(); ++size)
         expectError(ErrorKind::BadInput, [&] { decodeHdr(std::span(whole).first(size), "cut.hdr"); }, {"cut.hdr"});
-    for (const char* resolution : {"-Y 0 +X 2", "-Y 3 +X -2", "-Y 60000 +X 60000", "-Y 3 +Y 2", "hello", "-Y 99999999 +X 2"})
+    for (const char* resolution :
+         {"-Y 0 +X 2", "-Y 3 +X -2", "-Y 60000 +X 60000", "-Y 3 +Y 2", "hello", "-Y 99999999 +X 2"})
         expectError(ErrorKind::BadInput, [&] { decodeHdr(hdrFile("", resolution, kFlat), "bad.hdr"); }, {"bad.hdr"});
     // Runs beyond the line, and a line that says it is longer.
-    expectError(ErrorKind::BadInput, [] { decodeHdr(hdrFile("", "-Y 1 +X 8", {2, 2, 0, 8, 255, 1}), "run.hdr"); }, {"run.hdr"});
-    expectError(ErrorKind::BadInput, [] { decodeHdr(hdrFile("", "-Y 1 +X 8", {2, 2, 0, 9, 136, 1}), "run.hdr"); }, {"run.hdr"});
+    expectError(ErrorKind::BadInput,
+                [] {
+                    decodeHdr(hdrFile("", "-Y 1 +X 8", {2, 2, 0, 8, 255, 1}), "run.hdr");
+                },
+                {"run.hdr"});
+    expectError(ErrorKind::BadInput,
+                [] {
+                    decodeHdr(hdrFile("", "-Y 1 +X 8", {2, 2, 0, 9, 136, 1}), "run.hdr");
+                },
+                {"run.hdr"});
 }
 
 TEST(Hdr, EnvironmentMapsOpen) {

@@ -71,7 +71,8 @@ TEST(Png, AbsurdSizesAreRefusedBeforeAllocation) {
 
 TEST(Png, PixelsAndTextsComeBack) {
     const Image8 image = noiseImage8({257, 89});
-    const PngTexts texts = {{kStateKey, "{\"ä\": \"" + std::string(5000, 'x') + "\"}"}, {"Software", "short\nlines"}, {"Empty", ""}};
+    const PngTexts texts = {
+        {kStateKey, "{\"ä\": \"" + std::string(5000, 'x') + "\"}"}, {"Software", "short\nlines"}, {"Empty", ""}};
     const Png read = decodePng(encodePng(image, texts, PngAlpha::Keep), "memory.png");
     EXPECT_EQ(read.extent, image.extent);
     EXPECT_EQ(read.image8().rgba, image.rgba);
@@ -113,7 +114,8 @@ TEST(Png, DamageIsRefusedByName) {
     expectError(ErrorKind::BadInput, [] { readPng("/no/such.png"); }, {"/no/such.png"});
     for (uint32_t round = 0; round < 300; ++round) {
         std::vector<uint8_t> damaged = whole;
-        damaged[8 + hashCombine(round, 1) % (damaged.size() - 8)] ^= static_cast<uint8_t>(1 + hashCombine(round, 2) % 255);
+        damaged[8 + hashCombine(round, 1) % (damaged.size() - 8)] ^=
+            static_cast<uint8_t>(1 + hashCombine(round, 2) % 255);
         try {
             decodePng(damaged, "damaged.png");
         } catch (const Error& error) {

@@ -41,11 +41,13 @@ TEST(Video, FramesOfOddSizeBecomeAFileThatPlays) {
     }
     const std::string probe = outputOf(
         "ffprobe -v error -select_streams v -count_frames -show_entries "
-        "stream=codec_name,width,height,pix_fmt,r_frame_rate,nb_read_frames -of csv=p=0 " + (folder / "out.mp4").string());
+        "stream=codec_name,width,height,pix_fmt,r_frame_rate,nb_read_frames -of csv=p=0 " +
+        (folder / "out.mp4").string());
     EXPECT_EQ(probe, "h264,66,34,yuv420p,30/1,12\n");
     // The decoded colour is the one that went in.
     const std::string raw = (folder / "frame.rgb").string();
-    outputOf("ffmpeg -v error -i " + (folder / "out.mp4").string() + " -frames:v 1 -f rawvideo -pix_fmt rgb24 " + raw + " 2>&1");
+    outputOf("ffmpeg -v error -i " + (folder / "out.mp4").string() + " -frames:v 1 -f rawvideo -pix_fmt rgb24 " + raw +
+             " 2>&1");
     const std::vector<uint8_t> pixels = readFile(raw);
     ASSERT_EQ(pixels.size(), 66u * 34 * 3);
     const size_t centre = (17u * 66 + 33) * 3;

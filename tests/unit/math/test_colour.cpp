@@ -16,8 +16,7 @@ TEST(Colour, SrgbRoundTripAndKnownPoints) {
     EXPECT_EQ(srgbFromLinear(-0.3f), -srgbFromLinear(0.3f));
     // The two branches meet.
     EXPECT_NEAR(srgbFromLinear(0.0031308f), srgbFromLinear(0.0031309f), 2e-6f);
-    for (int i = 0; i < 256; ++i)
-        EXPECT_EQ(static_cast<int>(srgbFromLinear(linearFromSrgbTable()[i]) * 255 + 0.5f), i);
+    for (int i = 0; i < 256; ++i) EXPECT_EQ(static_cast<int>(srgbFromLinear(linearFromSrgbTable()[i]) * 255 + 0.5f), i);
 }
 
 TEST(Colour, LuminanceWeightsSumToOne) {

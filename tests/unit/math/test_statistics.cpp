@@ -32,7 +32,8 @@ TEST(Statistics, NormalTail) {
 
 TEST(Statistics, ChiSquareTail) {
     // 95% and 99% points of the usual table.
-    const double table[][3] = {{1, 3.841459, 6.634897}, {2, 5.991465, 9.210340}, {10, 18.307038, 23.209251}, {100, 124.342113, 135.806723}};
+    const double table[][3] = {
+        {1, 3.841459, 6.634897}, {2, 5.991465, 9.210340}, {10, 18.307038, 23.209251}, {100, 124.342113, 135.806723}};
     for (const auto& [dof, five, one] : table) {
         EXPECT_NEAR(chiSquareTail(five, dof), 0.05, 1e-6) << dof;
         EXPECT_NEAR(chiSquareTail(one, dof), 0.01, 1e-6) << dof;

@@ -9,14 +9,20 @@
 namespace lumi {
 namespace {
 
-float random(uint32_t i) { return unitFloat(pcgHash(i)); }
-Vec3 randomDirection(uint32_t i) { return sampleSphere({random(2 * i), random(2 * i + 1)}); }
+float random(uint32_t i) {
+    return unitFloat(pcgHash(i));
+}
+Vec3 randomDirection(uint32_t i) {
+    return sampleSphere({random(2 * i), random(2 * i + 1)});
+}
 void expectNear(const Vec3& a, const Vec3& b, float tolerance) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance);
 }
 Mat4 randomMatrix(uint32_t i) {
     Mat4 m(1);
-    for (int c = 0; c < 3; ++c) m[c] = Vec4(2 * random(16 * i + 3 * static_cast<uint32_t>(c)) * randomDirection(i * 7 + static_cast<uint32_t>(c)), 0);
+    for (int c = 0; c < 3; ++c)
+        m[c] = Vec4(
+            2 * random(16 * i + 3 * static_cast<uint32_t>(c)) * randomDirection(i * 7 + static_cast<uint32_t>(c)), 0);
     m[3] = Vec4(randomDirection(i * 7 + 5), 1);
     return m;
 }
@@ -30,7 +36,8 @@ TEST(Transform, ScalesThenRotatesThenMoves) {
 }
 
 TEST(Transform, InterpolationMeetsItsEndsAndTakesTheShortWay) {
-    const Transform a{Vec3(0), Quat(1, 0, 0, 0), Vec3(1)}, b{Vec3(2), -glm::angleAxis(radians(80), Vec3(0, 0, 1)), Vec3(3)};
+    const Transform a{Vec3(0), Quat(1, 0, 0, 0), Vec3(1)},
+        b{Vec3(2), -glm::angleAxis(radians(80), Vec3(0, 0, 1)), Vec3(3)};
     const Transform middle = interpolate(a, b, 0.5f);
     EXPECT_EQ(middle.translation, Vec3(1));
     EXPECT_EQ(middle.scale, Vec3(2));

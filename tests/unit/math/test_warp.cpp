@@ -36,32 +36,38 @@ double turn(double y, double x) {
 }
 
 TEST(Warp, DiskIsUniform) {
-    EXPECT_GT(uniformity(400, 1, [](Vec2 u) {
-        const Vec2 d = sampleDisk(u);
-        EXPECT_LE(glm::length(d), 1.00001f);
-        return grid(d.x * d.x + d.y * d.y, turn(d.y, d.x));
-    }), kLevel);
+    EXPECT_GT(uniformity(400, 1,
+                         [](Vec2 u) {
+                             const Vec2 d = sampleDisk(u);
+                             EXPECT_LE(glm::length(d), 1.00001f);
+                             return grid(d.x * d.x + d.y * d.y, turn(d.y, d.x));
+                         }),
+              kLevel);
     EXPECT_EQ(sampleDisk({0.5f, 0.5f}), Vec2(0));
 }
 
 TEST(Warp, HemisphereIsCosineWeighted) {
     // The density cos/pi makes sin^2 of the angle uniform.
-    EXPECT_GT(uniformity(400, 2, [](Vec2 u) {
-        const Vec3 w = sampleCosineHemisphere(u);
-        EXPECT_GE(w.z, 0);
-        EXPECT_NEAR(glm::length(w), 1, 1e-5f);
-        return grid(1 - double(w.z) * w.z, turn(w.y, w.x));
-    }), kLevel);
+    EXPECT_GT(uniformity(400, 2,
+                         [](Vec2 u) {
+                             const Vec3 w = sampleCosineHemisphere(u);
+                             EXPECT_GE(w.z, 0);
+                             EXPECT_NEAR(glm::length(w), 1, 1e-5f);
+                             return grid(1 - double(w.z) * w.z, turn(w.y, w.x));
+                         }),
+              kLevel);
     EXPECT_EQ(pdfCosineHemisphere(-0.1f), 0);
     EXPECT_FLOAT_EQ(pdfCosineHemisphere(1), kInvPi);
 }
 
 TEST(Warp, SphereIsUniform) {
-    EXPECT_GT(uniformity(400, 3, [](Vec2 u) {
-        const Vec3 w = sampleSphere(u);
-        EXPECT_NEAR(glm::length(w), 1, 1e-5f);
-        return grid(0.5 * (1 - w.z), turn(w.y, w.x));
-    }), kLevel);
+    EXPECT_GT(uniformity(400, 3,
+                         [](Vec2 u) {
+                             const Vec3 w = sampleSphere(u);
+                             EXPECT_NEAR(glm::length(w), 1, 1e-5f);
+                             return grid(0.5 * (1 - w.z), turn(w.y, w.x));
+                         }),
+              kLevel);
     EXPECT_FLOAT_EQ(pdfSphere() * 4 * kPi, 1);
 }
 
@@ -69,36 +75,44 @@ TEST(Warp, ConesAreUniformEvenWhenTheyAreNarrow) {
     for (const float angle : {60.0f, 0.25f, 0.01f}) {
         const double exact = 2 * std::pow(std::sin(angle * M_PI / 360), 2);
         const auto height = static_cast<float>(exact);
-        EXPECT_GT(uniformity(400, 4, [&](Vec2 u) {
-            const Vec3 w = sampleCone(u, height);
-            // sin^2 tells narrow angles apart where 1 - cos has no bits left: 1 - cos = s / (1 + sqrt(1 - s)).
-            const double s = double(w.x) * w.x + double(w.y) * w.y;
-            const double h = s / (1 + std::sqrt(std::max(0.0, 1 - s)));
-            EXPECT_LE(h, exact * 1.0001);
-            return grid(h / exact * 0.99999, turn(w.y, w.x));
-        }), kLevel) << angle;
+        EXPECT_GT(uniformity(400, 4,
+                             [&](Vec2 u) {
+                                 const Vec3 w = sampleCone(u, height);
+                                 // sin^2 tells narrow angles apart where 1 - cos has no bits left: 1 - cos = s / (1 +
+                                 // sqrt(1 - s)).
+                                 const double s = double(w.x) * w.x + double(w.y) * w.y;
+                                 const double h = s / (1 + std::sqrt(std::max(0.0, 1 - s)));
+                                 EXPECT_LE(h, exact * 1.0001);
+                                 return grid(h / exact * 0.99999, turn(w.y, w.x));
+                             }),
+                  kLevel)
+            << angle;
         EXPECT_NEAR(pdfCone(height) * 2 * M_PI * exact, 1, 1e-5);
     }
 }
 
 TEST(Warp, TrianglesAreUniform) {
     // Barycentrics to a square: x = (1 - b1 - b2), fold: u = 1 - sqrt(1 - ...): the classical inverse.
-    EXPECT_GT(uniformity(400, 5, [](Vec2 u) {
-        const Vec2 b = sampleTriangle(u);
-        EXPECT_GE(b.x, 0);
-        EXPECT_GE(b.y, 0);
-        EXPECT_LE(b.x + b.y, 1.000001f);
-        const double rest = 1 - double(b.x);  // distribution of b1: 1 - (1 - b1)^2
-        return grid(1 - rest * rest, rest > 0 ? b.y / rest : 0);
-    }), kLevel);
+    EXPECT_GT(uniformity(400, 5,
+                         [](Vec2 u) {
+                             const Vec2 b = sampleTriangle(u);
+                             EXPECT_GE(b.x, 0);
+                             EXPECT_GE(b.y, 0);
+                             EXPECT_LE(b.x + b.y, 1.000001f);
+                             const double rest = 1 - double(b.x);  // distribution of b1: 1 - (1 - b1)^2
+                             return grid(1 - rest * rest, rest > 0 ? b.y / rest : 0);
+                         }),
+              kLevel);
 }
 
 TEST(Warp, TestsCanFail) {
     // A cosine hemisphere is not uniform in height.
-    EXPECT_LT(uniformity(400, 6, [](Vec2 u) {
-        const Vec3 w = sampleCosineHemisphere(u);
-        return grid(1 - w.z, turn(w.y, w.x));
-    }), kLevel);
+    EXPECT_LT(uniformity(400, 6,
+                         [](Vec2 u) {
+                             const Vec3 w = sampleCosineHemisphere(u);
+                             return grid(1 - w.z, turn(w.y, w.x));
+                         }),
+              kLevel);
 }
 
 TEST(Warp, LatLongKeepsItsConventions) {

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "params/json.h"
-#include "support/parameter_object.h"
 #include "support/expect_error.h"
+#include "support/parameter_object.h"
 
 namespace lumi {
 namespace {
@@ -38,12 +38,22 @@ TEST(ParameterJson, WrongTypesAreRefused) {
     const auto info = [&](const std::string& id) {
         return *std::find_if(list.begin(), list.end(), [&](const ParameterInfo& i) { return i.id == id; });
     };
-    const std::pair<const char*, const char*> bad[] = {{"alpha", "\"1\""},  {"alpha", "true"},   {"levels", "1.5"},
-                                                       {"levels", "4294967297"}, {"levels", "-99999999999"}, {"levels", "18446744073709551615"},
-                                                       {"temporal", "1"},   {"filter", "1"},     {"tint", "[1,2]"},
-                                                       {"tint", "[1,2,null]"}, {"tint", "1"},    {"file", "[]"}, {"file", "null"}};
+    const std::pair<const char*, const char*> bad[] = {{"alpha", "\"1\""},
+                                                       {"alpha", "true"},
+                                                       {"levels", "1.5"},
+                                                       {"levels", "4294967297"},
+                                                       {"levels", "-99999999999"},
+                                                       {"levels", "18446744073709551615"},
+                                                       {"temporal", "1"},
+                                                       {"filter", "1"},
+                                                       {"tint", "[1,2]"},
+                                                       {"tint", "[1,2,null]"},
+                                                       {"tint", "1"},
+                                                       {"file", "[]"},
+                                                       {"file", "null"}};
     for (const auto& [id, text] : bad)
-        expectError(ErrorKind::Usage, [&, i = id, t = text] { parameterFromJson(info(i), json::parse(t), "scene.json:3:4"); },
+        expectError(ErrorKind::Usage,
+                    [&, i = id, t = text] { parameterFromJson(info(i), json::parse(t), "scene.json:3:4"); },
                     {"scene.json:3:4", id});
     EXPECT_EQ(parameterFromJson(info("alpha"), json::parse("1")), ParameterValue(1.0f));
 }
@@ -52,7 +62,9 @@ TEST(ParameterJson, DescriptionsSayAll) {
     SampleObject object;
     const std::vector<ParameterInfo> list = listParameters(object.describer());
     const json alpha = toJson(list[0]);
-    EXPECT_EQ(alpha, json::parse(R"-({"id": "alpha", "title": "Alpha", "type": "number", "default": 0.2, "min": 0.01, "max": 1.0,
+    EXPECT_EQ(
+        alpha,
+        json::parse(R"-({"id": "alpha", "title": "Alpha", "type": "number", "default": 0.2, "min": 0.01, "max": 1.0,
         "scale": "log", "help": "Weight of the new value (eq. 1)", "redo": "filter"})-"));
     const json filter = toJson(list[4]);
     EXPECT_EQ(filter["options"], json::parse(R"(["box", "gauss", "catmull-rom"])"));

@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "support/parameter_object.h"
 #include "support/expect_error.h"
+#include "support/parameter_object.h"
 
 namespace lumi {
 namespace {
@@ -22,7 +22,8 @@ TEST(Parameters, AreListedInOrderWithTheirDeclaration) {
     SampleObject object;
     std::vector<std::string> ids;
     for (const ParameterInfo& info : listParameters(object.describer())) ids.push_back(info.id);
-    EXPECT_EQ(ids, (std::vector<std::string>{"alpha", "levels", "inner", "temporal", "filter", "tint", "offset", "file"}));
+    EXPECT_EQ(ids,
+              (std::vector<std::string>{"alpha", "levels", "inner", "temporal", "filter", "tint", "offset", "file"}));
     const ParameterInfo alpha = infoOf(object, "alpha");
     EXPECT_EQ(alpha.type, ParameterType::Number);
     EXPECT_EQ(alpha.scale, Scale::Log);
@@ -78,7 +79,8 @@ TEST(Parameters, RangesAreClosedAndRefuse) {
     setParameter(describe, "levels", 1);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const float bad : {0.0f, 1.01f, -kInfinity, kInfinity, nan})
-        expectError(ErrorKind::Usage, [&] { setParameter(describe, "alpha", bad, "--set"); }, {"--set", "\"alpha\"", "0.01 to 1"});
+        expectError(ErrorKind::Usage, [&] { setParameter(describe, "alpha", bad, "--set"); },
+                    {"--set", "\"alpha\"", "0.01 to 1"});
     expectError(ErrorKind::Usage, [&] { setParameter(describe, "levels", 9); }, {"1 to 8", "found 9"});
     expectError(ErrorKind::Usage, [&] { setParameter(describe, "tint", Vec3(0, 0, 2.1f)); }, {"0 to 2"});
     expectError(ErrorKind::Usage, [&] { setParameter(describe, "offset", Vec3(0, nan, 0)); }, {"offset"});
@@ -91,11 +93,13 @@ TEST(Parameters, WrongTypesAndNamesAreRefused) {
     const Describe describe = object.describer();
     expectError(ErrorKind::Usage, [&] { setParameter(describe, "levels", 2.0f); }, {"whole number"});
     expectError(ErrorKind::Usage, [&] { setParameter(describe, "temporal", 1); }, {"true or false"});
-    expectError(ErrorKind::Usage, [&] { setParameter(describe, "filter", std::string("tent")); }, {"box, gauss, catmull-rom", "tent"});
+    expectError(ErrorKind::Usage, [&] { setParameter(describe, "filter", std::string("tent")); },
+                {"box, gauss, catmull-rom", "tent"});
     expectError(ErrorKind::Usage, [&] { setParameter(describe, "filter", 1); }, {"filter"});
     expectError(ErrorKind::Usage, [&] { setParameter(describe, "tint", 1.0f); }, {"three numbers"});
     expectError(ErrorKind::Usage, [&] { setParameter(describe, "file", 1); }, {"text"});
-    expectError(ErrorKind::Usage, [&] { setParameter(describe, "alfa", 1.0f, "x.json:1:2"); }, {"x.json:1:2", "alfa", "\"alpha\""});
+    expectError(ErrorKind::Usage, [&] { setParameter(describe, "alfa", 1.0f, "x.json:1:2"); },
+                {"x.json:1:2", "alfa", "\"alpha\""});
     expectError(ErrorKind::Usage, [&] { getParameter(describe, "qqqqqqqqqq"); }, {"one of alpha"});
 }
 
@@ -113,7 +117,9 @@ TEST(Parameters, TextFormsRoundTrip) {
 
 TEST(Parameters, TextFormsOfTheCommandLine) {
     SampleObject object;
-    const auto parse = [&](const char* id, const char* text) { return parseParameter(infoOf(object, id), text, "--set"); };
+    const auto parse = [&](const char* id, const char* text) {
+        return parseParameter(infoOf(object, id), text, "--set");
+    };
     for (const char* yes : {"true", "on", "1"}) EXPECT_EQ(parse("temporal", yes), ParameterValue(true));
     for (const char* no : {"false", "off", "0"}) EXPECT_EQ(parse("temporal", no), ParameterValue(false));
     EXPECT_EQ(parse("levels", "7"), ParameterValue(7));
@@ -125,11 +131,12 @@ TEST(Parameters, TextFormsOfTheCommandLine) {
     EXPECT_EQ(parse("tint", "0.5"), ParameterValue(Vec3(0.5f)));
     EXPECT_EQ(parse("tint", "1,0,0.25"), ParameterValue(Vec3(1, 0, 0.25f)));
     EXPECT_EQ(parse("file", "a,b"), ParameterValue(std::string("a,b")));
-    const std::pair<const char*, const char*> bad[] = {{"alpha", ""},      {"alpha", "x"},     {"alpha", "1x"}, {"alpha", "nan"},
-                                                       {"alpha", "+-1"},   {"alpha", "inf"},   {"levels", "1.5"}, {"levels", "9e9"},
-                                                       {"levels", "7 "},   {"temporal", "ja"}, {"tint", "1,2"}, {"tint", "1,2,3,4"},
-                                                       {"tint", "1,2,3,"}, {"tint", ""}};
-    for (const auto& [id, text] : bad) expectError(ErrorKind::Usage, [&, i = id, t = text] { parse(i, t); }, {"--set", id});
+    const std::pair<const char*, const char*> bad[] = {
+        {"alpha", ""},    {"alpha", "x"},      {"alpha", "1x"},    {"alpha", "nan"}, {"alpha", "+-1"},
+        {"alpha", "inf"}, {"levels", "1.5"},   {"levels", "9e9"},  {"levels", "7 "}, {"temporal", "ja"},
+        {"tint", "1,2"},  {"tint", "1,2,3,4"}, {"tint", "1,2,3,"}, {"tint", ""}};
+    for (const auto& [id, text] : bad)
+        expectError(ErrorKind::Usage, [&, i = id, t = text] { parse(i, t); }, {"--set", id});
 }
 
 }  // namespace
