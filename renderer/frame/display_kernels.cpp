@@ -142,7 +142,8 @@ int map(const float* v, int count, float low, float perUnit, const uint32_t* tab
         float t = (v[i] - low) * perUnit;
         if (cyclic) {
             // Beyond 2^22 a float has no fraction worth showing.
-            const float held = clamped(t + 4194304.0f, 8388608.0f) - 4194304.0f;
+            const float above = t > -4194304.0f ? t : -4194304.0f;  // NaN too
+            const float held = above < 4194304.0f ? above : 4194304.0f;
             t = held - std::floor(held);
         }
         const uint32_t pixel = table[static_cast<int32_t>(clamped(t, 1) * last + 0.5f)];

@@ -181,6 +181,26 @@ TEST(Display, ManualRangeReachesTheMapsEnds) {
     }
 }
 
+TEST(Display, EveryMapShowsItsOwnColoursAndCyclicOnesWrap) {
+    const Extent2 extent{257, 1};
+    Image image(extent, 1);
+    for (int x = 0; x < extent.width; ++x) image.at(0, x, 0) = static_cast<float>(x) / 256;
+    for (const char* map : {"viridis", "turbo", "magma", "gray", "signed", "cyclic"}) {
+        Image8 out;
+        convert(image, "Y", map, manual(0, 1), out);
+        for (int x = 0; x < extent.width; ++x)
+            for (size_t c = 0; c < 3; ++c) {
+                const Vec3 wanted = colourMapValue(map, image.at(0, x, 0));
+                EXPECT_LE(levels(pixel(out, x, 0)[c], wanted[static_cast<int>(c)]), 2) << map << ' ' << x;
+            }
+    }
+    Image8 out, shifted;
+    convert(image, "Y", "cyclic", manual(0, 1), out);
+    for (int x = 0; x < extent.width; ++x) image.at(0, x, 0) -= 3;
+    convert(image, "Y", "cyclic", manual(0, 1), shifted);
+    EXPECT_EQ(out.rgba, shifted.rgba);
+}
+
 TEST(Display, AutomaticRangeIsThePercentilesOfFiniteValues) {
     Image image({1000, 101}, 1);
     for (int y = 0; y < 101; ++y)
