@@ -26,6 +26,13 @@ struct CornerHash {
     }
 };
 
+/// A triangle's unit normal times its angle at `here`: sums do not depend on how polygons were cut.
+Vec3 weightedNormal(const Vec3& here, const Vec3& next, const Vec3& last) {
+    const Vec3 a = next - here, b = last - here, normal = glm::cross(a, b);
+    const float length = glm::length(normal);
+    return length > 0 ? normal * (std::atan2(length, glm::dot(a, b)) / length) : Vec3(0);
+}
+
 class ShapeReader {
 public:
     ShapeReader(const tinyobj::attrib_t& attributes, const tinyobj::shape_t& shape, uint32_t fallbackMaterial,
@@ -81,21 +88,22 @@ private:
         const int id = face < source_.material_ids.size() ? source_.material_ids[face] : -1;
         for (const UVec3& t : triangulatePolygon(corners)) {
             UVec3 triangle;
-            const Vec3 normal = glm::cross(corners[t.y] - corners[t.x], corners[t.z] - corners[t.x]);
-            for (int c = 0; c < 3; ++c) triangle[c] = vertexOf(source_.indices[first + t[c]], group, normal);
+            for (int c = 0; c < 3; ++c)
+                triangle[c] = vertexOf(source_.indices[first + t[c]], group,
+                                       weightedNormal(corners[t[c]], corners[t[(c + 1) % 3]], corners[t[(c + 2) % 3]]));
             mesh_.triangles.push_back(triangle);
             mesh_.triangleMaterial.push_back(id < 0 ? fallback_ : static_cast<uint32_t>(id));
         }
     }
 
-    uint32_t vertexOf(const tinyobj::index_t& index, int64_t group, const Vec3& areaNormal) {
+    uint32_t vertexOf(const tinyobj::index_t& index, int64_t group, const Vec3& share) {
         const bool computed = keepsNormals() && index.normal_index < 0;
         const Corner corner{index.vertex_index, index.texcoord_index, index.normal_index, computed ? group : 0};
         const auto [found, isNew] = vertices_.try_emplace(corner, static_cast<uint32_t>(mesh_.positions.size()));
         if (isNew) addVertex(index);
         if (computed) {
             const Corner seam{index.vertex_index, -1, -1, group};
-            normalSums_[seam] += areaNormal;
+            normalSums_[seam] += share;
             seams_.emplace_back(found->second, seam);
         }
         return found->second;

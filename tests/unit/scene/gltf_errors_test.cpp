@@ -1,0 +1,191 @@
+#include <gtest/gtest.h>
+
+#include "gltf_support.h"
+
+namespace lumi {
+namespace {
+
+using test::expectError;
+using test::GltfBuilder;
+using test::TemporaryFolder;
+
+void expectFileRefused(const std::string& name, const std::vector<uint8_t>& bytes,
+                       const std::initializer_list<std::string>& parts) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / name, bytes);
+    MessageLog log;
+    expectError(ErrorKind::BadInput, [&] { loadGltf(folder / name, log); }, parts);
+}
+
+std::vector<uint8_t> bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
+
+TEST(GltfErrors, TruncatedGlbAtEveryLength) {
+    GltfBuilder file;
+    file.triangle();
+    const std::vector<uint8_t> whole = file.glb();
+    for (size_t length = 0; length < whole.size(); length += 3)
+        expectFileRefused("cut.glb", {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)}, {"cut.glb"});
+}
+
+TEST(GltfErrors, EveryByteOfTheGlbHeaderMatters) {
+    GltfBuilder file;
+    file.triangle();
+    const std::vector<uint8_t> whole = file.glb();
+    for (size_t i = 0; i < 20; ++i) {
+        std::vector<uint8_t> broken = whole;
+        broken[i] ^= 0x80;
+        TemporaryFolder folder;
+        writeFileAtomically(folder / "broken.glb", broken);
+        MessageLog log;
+        EXPECT_THROW(loadGltf(folder / "broken.glb", log), Error) << "byte " << i;
+    }
+}
+
+TEST(GltfErrors, NotAGlb) {
+    expectFileRefused("text.glb", bytesOf("hello, this is not a binary file at all"), {"text.glb", "glTF"});
+    expectFileRefused("empty.gltf", {}, {"empty.gltf"});
+    expectFileRefused("array.gltf", bytesOf("[1, 2, 3]"), {"array.gltf"});
+    expectFileRefused("old.gltf", bytesOf("{}      "), {"old.gltf", "asset"});
+}
+
+TEST(GltfErrors, JsonFaultsHaveLineAndColumn) {
+    expectFileRefused("bad.gltf", bytesOf("{\n  \"asset\": {\"version\": \"2.0\"},\n  \"nodes\": [}\n}"), {"bad.gltf:3:13"});
+}
+
+TEST(GltfErrors, DeepJsonIsRefusedBeforeItIsParsed) {
+    const std::string deep = "{\"asset\":{\"version\":\"2.0\"},\"extras\":" + std::string(200000, '[') +
+                             std::string(200000, ']') + "}";
+    expectFileRefused("deep.gltf", bytesOf(deep), {"deep.gltf", "nested too deeply"});
+}
+
+TEST(GltfErrors, MissingFileAndFolder) {
+    TemporaryFolder folder;
+    MessageLog log;
+    expectError(ErrorKind::BadInput, [&] { loadGltf(folder / "none.gltf", log); }, {"none.gltf"});
+    std::filesystem::create_directory(folder / "folder.gltf");
+    expectError(ErrorKind::BadInput, [&] { loadGltf(folder / "folder.gltf", log); }, {"folder.gltf"});
+}
+
+TEST(GltfErrors, MissingBufferIsNamed) {
+    expectFileRefused("a.gltf",
+                      bytesOf(R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":4,"uri":"no%20such.bin"}]})"),
+                      {"a.gltf", "no such.bin", "does not exist"});
+}
+
+TEST(GltfErrors, NamesThatLeadOutOfTheFolder) {
+    for (const std::string uri : {"../secret.bin", "/etc/hostname", "a/../../secret.bin", "%2e%2e/secret.bin",
+                                  "file:///etc/hostname", "http://example.org/x.bin"})
+        expectFileRefused("a.gltf",
+                          bytesOf(R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":4,"uri":")" + uri + "\"}]}"),
+                          {"a.gltf", "leads out"});
+    expectFileRefused("a.gltf", bytesOf(R"({"asset":{"version":"2.0"},"images":[{"uri":"../secret.png"}]})"), {"leads out"});
+}
+
+TEST(GltfErrors, CyclesAndSharedChildren) {
+    GltfBuilder self;
+    self.triangle();
+    self.json["nodes"][0]["children"] = {0};
+    self.expectRefused({"/nodes/0", "own ancestor"});
+
+    GltfBuilder ring;
+    ring.triangle();
+    ring.json["nodes"] = {{{"children", {1}}}, {{"children", {2}}}, {{"children", {0}}}};
+    ring.expectRefused({"/nodes/0", "own ancestor"});
+
+    GltfBuilder shared;
+    shared.triangle();
+    shared.json["nodes"] = {{{"children", {1, 2}}}, {{"children", {2}}}, {{"mesh", 0}}};
+    shared.expectRefused({"/nodes/2", "two parents"});
+}
+
+TEST(GltfErrors, LongChainsOfNodesAreNoStackOverflow) {
+    GltfBuilder file;
+    file.triangle();
+    constexpr int kCount = 50000;
+    nlohmann::json nodes = nlohmann::json::array();
+    for (int i = 0; i + 1 < kCount; ++i) nodes.push_back({{"children", {i + 1}}});
+    nodes.push_back({{"mesh", 0}});
+    file.json["nodes"] = nodes;
+    EXPECT_EQ(file.load().nodes.size(), size_t(kCount));
+}
+
+TEST(GltfErrors, BadIndicesInTheTree) {
+    const auto refused = [](const std::function<void(GltfBuilder&)>& breakIt, const std::initializer_list<std::string>& parts) {
+        GltfBuilder file;
+        file.triangle();
+        breakIt(file);
+        file.expectRefused(parts);
+    };
+    refused([](auto& f) { f.json["nodes"][0]["mesh"] = 12; }, {"/nodes/0/mesh", "expected 0 to 0", "found 12"});
+    refused([](auto& f) { f.json["nodes"][0]["children"] = {-2}; }, {"/nodes/0/children/0"});
+    refused([](auto& f) { f.json["nodes"][0]["camera"] = 0; }, {"/nodes/0/camera", "no cameras"});
+    refused([](auto& f) { f.json["scene"] = 5; }, {"/scene"});
+    refused([](auto& f) { f.json["scenes"][0]["nodes"] = {0, 7}; }, {"/scenes/0/nodes/1", "7"});
+    refused([](auto& f) { f.json["nodes"][0]["translation"] = {1, 2}; }, {"/nodes/0/translation", "wrong length"});
+    refused([](auto& f) { f.json["nodes"][0]["scale"] = {1, 1e300, 1}; }, {"/nodes/0/scale", "finite"});
+    refused([](auto& f) { f.json["nodes"][0]["skin"] = 1; }, {"/nodes/0/skin"});
+    refused([](auto& f) { f.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 4; }, {"/nodes/0", "light"});
+    refused(
+        [](auto& f) {
+            f.json["materials"] = {{{"normalTexture", {{"index", 3}}}}};
+            f.primitive()["material"] = 0;
+        },
+        {"/materials/0/normalTexture/index", "3"});
+}
+
+TEST(GltfErrors, PositionsThatAreNotFinite) {
+    GltfBuilder file;
+    file.triangle();
+    const float bad = std::numeric_limits<float>::quiet_NaN();
+    std::memcpy(file.bin.data() + 16, &bad, 4);
+    file.expectRefused({"POSITION", "vertex 1", "not finite"});
+}
+
+TEST(GltfErrors, RequiredExtensionsAreRefusedByName) {
+    GltfBuilder file;
+    file.triangle();
+    file.json["extensionsUsed"] = {"ACME_future"};
+    file.json["extensionsRequired"] = {"ACME_future"};
+    file.expectRefused({"/extensionsRequired/0", "ACME_future"});
+    file.json.erase("extensionsRequired");
+    MessageLog log;
+    file.load(log);
+    ASSERT_EQ(log.warnings().size(), 1u);
+    EXPECT_NE(log.warnings()[0].find("ACME_future"), std::string::npos);
+}
+
+TEST(GltfErrors, MissingAndDamagedTexturesAreWarnings) {
+    for (const char* image : {"no%20such.png", "damaged.png", "data:image/png;base64,AAAA"}) {
+        TemporaryFolder folder;
+        GltfBuilder file;
+        file.triangle();
+        file.json["images"] = {{{"uri", image}}};
+        file.json["textures"] = {{{"source", 0}}};
+        file.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+        file.primitive()["material"] = 0;
+        writeFileAtomically(folder / "damaged.png", std::string_view("not an image"));
+        writeFileAtomically(folder / "a.glb", file.glb());
+        MessageLog log;
+        const Scene scene = loadGltf(folder / "a.glb", log);
+        ASSERT_EQ(log.warnings().size(), 1u) << image;
+        EXPECT_NE(log.warnings()[0].find("placeholder"), std::string::npos) << log.warnings()[0];
+        EXPECT_NE(log.warnings()[0].find("/images/0"), std::string::npos) << log.warnings()[0];
+        ASSERT_TRUE(scene.materials[0].baseColorTexture);
+        EXPECT_GT(scene.materials[0].baseColorTexture.sample({0.1f, 0.1f}).x, 0);
+    }
+}
+
+TEST(GltfErrors, StoppedLoadsAreInterrupted) {
+    GltfBuilder file;
+    file.triangle();
+    std::stop_source source;
+    LoadOptions options;
+    options.stop = source.get_token();
+    options.progress = [&](float, const std::string&) { source.request_stop(); };
+    MessageLog log;
+    expectError(ErrorKind::Interrupted, [&] { file.load(log, options); });
+}
+
+
+}  // namespace
+}  // namespace lumi

@@ -1,0 +1,138 @@
+#include "scene/obj/load_obj.h"
+
+#include <gtest/gtest.h>
+
+#include "base/files.h"
+#include "scene/obj/triangulate.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace lumi {
+namespace {
+
+using test::expectError;
+using test::TemporaryFolder;
+
+Scene loadText(const std::string& obj, MessageLog& log, const std::string& mtl = {}) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "a.obj", std::string_view(obj));
+    if (!mtl.empty()) writeFileAtomically(folder / "a.mtl", std::string_view(mtl));
+    return loadObj(folder / "a.obj", log);
+}
+Scene loadText(const std::string& obj, const std::string& mtl = {}) {
+    MessageLog log;
+    return loadText(obj, log, mtl);
+}
+
+float area(std::span<const Vec3> corners, const std::vector<UVec3>& triangles) {
+    float sum = 0;
+    for (const UVec3& t : triangles)
+        sum += 0.5f * glm::cross(corners[t.y] - corners[t.x], corners[t.z] - corners[t.x]).z;
+    return sum;
+}
+
+TEST(Triangulate, ConvexPolygonsAreCovered) {
+    std::vector<Vec3> corners;
+    for (int i = 0; i < 12; ++i)
+        corners.emplace_back(std::cos(2 * kPi * static_cast<float>(i) / 12), std::sin(2 * kPi * static_cast<float>(i) / 12), 0);
+    const std::vector<UVec3> triangles = triangulatePolygon(corners);
+    EXPECT_EQ(triangles.size(), 10u);
+    EXPECT_NEAR(area(corners, triangles), 3, 1e-5f);
+}
+
+TEST(Triangulate, ConcavePolygonsKeepTheirShape) {
+    // An arrow head: the fan from corner 0 would leave the polygon.
+    const std::vector<Vec3> arrow{{2, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, -1, 0}};
+    for (size_t turn = 0; turn < 4; ++turn) {
+        std::vector<Vec3> corners = arrow;
+        std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(turn), corners.end());
+        const std::vector<UVec3> triangles = triangulatePolygon(corners);
+        ASSERT_EQ(triangles.size(), 2u);
+        EXPECT_NEAR(area(corners, triangles), 1, 1e-6f);
+        for (const UVec3& t : triangles) EXPECT_GT(area(corners, {t}), 0) << "every triangle faces as the polygon does";
+    }
+}
+
+TEST(Triangulate, BadPolygonsStillGiveTriangles) {
+    const std::vector<Vec3> line{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
+    EXPECT_EQ(triangulatePolygon(line).size(), 2u);
+    const std::vector<Vec3> bow{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}};
+    EXPECT_EQ(triangulatePolygon(bow).size(), 2u);
+    EXPECT_TRUE(triangulatePolygon(std::span(line).first(2)).empty());
+}
+
+TEST(Obj, SharesVerticesAndFlipsV) {
+    const Scene scene = loadText(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n"
+        "f 1/1/1 2/2/1 3/3/1 4/4/1\n");
+    const Mesh& mesh = *scene.instances.at(0).mesh;
+    EXPECT_EQ(mesh.positions.size(), 4u);
+    EXPECT_EQ(mesh.triangles.size(), 2u);
+    EXPECT_EQ(mesh.uv[0][0], Vec2(0, 1)) << "v grows downwards here";
+    EXPECT_EQ(mesh.normals[0], Vec3(0, 0, 1));
+    EXPECT_EQ(scene.materials.size(), 1u);
+}
+
+TEST(Obj, GroupsBecomeInstances) {
+    const Scene scene = loadText("v 0 0 0\nv 1 0 0\nv 1 1 0\no first\nf 1 2 3\no second\nf 3 2 1\n");
+    ASSERT_EQ(scene.instances.size(), 2u);
+    EXPECT_EQ(scene.instances[0].name, "first");
+    EXPECT_EQ(scene.instances[1].mesh->positions.size(), 3u);
+    EXPECT_TRUE(scene.instances[0].mesh->normals.empty()) << "no normals: flat";
+}
+
+TEST(Obj, SmoothingGroupsShareNormals) {
+    const std::string roof = "v 0 0 0\nv 1 0 0\nv 0 1 1\nv 1 1 1\nv 0 2 0\nv 1 2 0\n";
+    const Scene smooth = loadText(roof + "s 1\nf 1 2 4 3\nf 3 4 6 5\n");
+    const Mesh& mesh = *smooth.instances.at(0).mesh;
+    ASSERT_EQ(mesh.positions.size(), 6u);
+    EXPECT_NEAR(glm::length(mesh.normals[2] - Vec3(0, 0, 1)), 0, 1e-5f);
+    const Scene creased = loadText(roof + "s 1\nf 1 2 4 3\ns 2\nf 3 4 6 5\n");
+    EXPECT_EQ(creased.instances.at(0).mesh->positions.size(), 8u) << "the ridge is split";
+}
+
+TEST(Obj, MaterialsOfTheirFaces) {
+    const Scene scene = loadText("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl lamp\nf 1 2 3\nusemtl chrome\nf 3 2 1\n",
+                                 "newmtl chrome\nKd 0 0 0\nKs 0.9 0.8 0.7\nNs 1000\n"
+                                 "newmtl lamp\nKd 0.5 0.5 0.5\nKe 3 2 1\nNs 10\nKs 0 0 0\nd 0.5\n"
+                                 "newmtl pbr\nKd 1 0 0\nPr 0.3\nPm 1\n");
+    ASSERT_EQ(scene.materials.size(), 3u);
+    EXPECT_EQ(scene.instances[0].mesh->triangleMaterial, (std::vector<uint32_t>{1, 0}));
+    EXPECT_EQ(scene.materials[0].metallic, 1);
+    EXPECT_NEAR(scene.materials[0].roughness, std::pow(2.0f / 1002, 0.25f), 1e-5f);
+    EXPECT_EQ(scene.materials[1].emission, Vec3(3, 2, 1));
+    EXPECT_EQ(scene.materials[1].specular, 0);
+    EXPECT_EQ(scene.materials[1].alphaMode, AlphaMode::Blend);
+    EXPECT_EQ(scene.materials[2].metallic, 1);
+    EXPECT_FLOAT_EQ(scene.materials[2].roughness, 0.3f);
+}
+
+TEST(Obj, MissingFilesAreWarnings) {
+    MessageLog log;
+    loadText("mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", log);
+    ASSERT_EQ(log.warnings().size(), 1u);
+    EXPECT_NE(log.warnings()[0].find("none.mtl"), std::string::npos);
+    log.clear();
+    const Scene scene = loadText("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl m\nf 1 2 3\n", log,
+                                 "newmtl m\nKd 1 1 1\nmap_Kd ../out.png\nmap_bump none.png\n");
+    EXPECT_EQ(log.warnings().size(), 2u);
+    EXPECT_FALSE(scene.materials[0].baseColorTexture);
+}
+
+TEST(Obj, BadIndicesAreRefused) {
+    expectError(ErrorKind::BadInput, [] { loadText("v 0 0 0\nv 1 0 0\nf 1 2 9\n"); }, {"a.obj"});
+    expectError(ErrorKind::BadInput, [] { loadText("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/4 2/5 3/6\n"); }, {"a.obj"});
+    std::string wide = "v 0 0 0\n";
+    std::string face = "f";
+    for (int i = 0; i < 300; ++i) {
+        wide += "v " + std::to_string(i) + " 1 0\n";
+        face += " " + std::to_string(i + 1);
+    }
+    expectError(ErrorKind::BadInput, [&] { loadText(wide + face + "\n"); }, {"a.obj", "255"});
+    TemporaryFolder folder;
+    MessageLog log;
+    expectError(ErrorKind::BadInput, [&] { loadObj(folder / "none.obj", log); }, {"none.obj"});
+}
+
+}  // namespace
+}  // namespace lumi
