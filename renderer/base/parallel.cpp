@@ -25,7 +25,6 @@ std::atomic<bool> lowPriority{false};
 class WorkerSetup : public tbb::task_scheduler_observer {
 public:
     WorkerSetup() { observe(true); }
-    ~WorkerSetup() override { observe(false); }
     void on_scheduler_entry(bool isWorker) override {
         flushDenormals();
         if (isWorker && lowPriority) setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 10);
@@ -37,7 +36,11 @@ std::unique_ptr<tbb::global_control>& threadLimit() {
     return limit;
 }
 
-void ensureSetup() { static WorkerSetup setup; }
+/// Lives until the process ends: TBB's own statics may be gone before ours would be.
+void ensureSetup() {
+    static WorkerSetup* const setup = new WorkerSetup;
+    static_cast<void>(setup);
+}
 
 }  // namespace
 
