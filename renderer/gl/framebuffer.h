@@ -20,7 +20,7 @@ public:
 
 private:
     const GlFunctions& gl_;
-    Texture colour_;
+    GlTexture colour_;
     GLuint id_ = 0;
 };
 

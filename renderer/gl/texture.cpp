@@ -2,19 +2,19 @@
 
 namespace lumi {
 
-Texture::Texture(const GlFunctions& gl, TextureFilter filter) : gl_(gl) {
+GlTexture::GlTexture(const GlFunctions& gl, GlFilter filter) : gl_(gl) {
     gl.GenTextures(1, &id_);
     gl.BindTexture(GL_TEXTURE_2D, id_);
-    const GLint mode = filter == TextureFilter::Nearest ? GL_NEAREST : GL_LINEAR;
+    const GLint mode = filter == GlFilter::Nearest ? GL_NEAREST : GL_LINEAR;
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, mode);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, mode);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
-Texture::~Texture() { gl_.DeleteTextures(1, &id_); }
+GlTexture::~GlTexture() { gl_.DeleteTextures(1, &id_); }
 
-void Texture::upload(Extent2 extent, const uint8_t* rgba) {
+void GlTexture::upload(Extent2 extent, const uint8_t* rgba) {
     gl_.BindTexture(GL_TEXTURE_2D, id_);
     gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     if (extent == extent_ && rgba) {
@@ -25,7 +25,7 @@ void Texture::upload(Extent2 extent, const uint8_t* rgba) {
     extent_ = extent;
 }
 
-void Texture::bind(int unit) const {
+void GlTexture::bind(int unit) const {
     gl_.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     gl_.BindTexture(GL_TEXTURE_2D, id_);
 }

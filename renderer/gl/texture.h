@@ -6,15 +6,15 @@
 
 namespace lumi {
 
-enum class TextureFilter { Nearest, Linear };
+enum class GlFilter { Nearest, Linear };
 
 /// An RGBA8 texture, clamped at its edges, top row first in memory and at v = 0.
-class Texture {
+class GlTexture {
 public:
-    explicit Texture(const GlFunctions& gl, TextureFilter filter = TextureFilter::Nearest);
-    ~Texture();
-    Texture(const Texture&) = delete;
-    Texture& operator=(const Texture&) = delete;
+    explicit GlTexture(const GlFunctions& gl, GlFilter filter = GlFilter::Nearest);
+    ~GlTexture();
+    GlTexture(const GlTexture&) = delete;
+    GlTexture& operator=(const GlTexture&) = delete;
 
     /// `rgba`: 4 bytes a pixel, rows without gaps; null leaves the contents undefined. Memory is kept if the extent stays.
     void upload(Extent2 extent, const uint8_t* rgba);

@@ -1,0 +1,55 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+
+#include "app/view.h"
+#include "app/view_script.h"
+#include "app/workbench.h"
+#include "base/timer.h"
+#include "gl/context.h"
+#include "gl/framebuffer.h"
+
+namespace lumi {
+
+/// The window's content on a framebuffer without a display, driven line by line. A frame of the UI counts 1/60 s
+/// however long it took, so that scripts mean the same on every machine.
+class ViewDriver {
+public:
+    explicit ViewDriver(const ViewOptions& options);
+
+    void run(const ScriptLine& line);
+    /// The last events take effect.
+    void finish();
+    /// {"files", "context", "first_image_s", "ui_frames", "ui_ms": {"median","p99","worst"}, "engine_frames",
+    ///  "warnings", "errors"}.
+    nlohmann::json report() const;
+
+private:
+    void build(int frames = 1);
+    void settle();  ///< builds until every event was taken and has been seen twice
+    void wait(const ScriptLine& line, const std::function<bool()>& until);
+    void pointer(const ScriptLine& line);
+    void click(const ScriptLine& line, int times);
+    void drag(const ScriptLine& line);
+    void keys(const ScriptLine& line);
+    void waits(const ScriptLine& line);
+    void shot(const std::string& name);
+    Vec2 centreOf(const ScriptLine& line, const std::string& name);
+    void strike(Key key, bool down) { interface_.input().add(KeyChanged{key, down}); }
+
+    const ViewOptions& options_;
+    std::unique_ptr<HeadlessContext> context_;
+    MessageLog log_;
+    Session session_;
+    Interface interface_;
+    std::unique_ptr<Framebuffer> framebuffer_;
+    Extent2 size_;
+    float scale_ = 1;
+    Timer sinceStart_;
+    double firstImageS_ = -1;
+    int frames_ = 0;
+    std::vector<std::filesystem::path> files_;
+};
+
+}  // namespace lumi

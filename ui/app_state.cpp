@@ -1,0 +1,94 @@
+#include "ui/app_state.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace lumi {
+
+void AppState::beginFrame() {
+    document.refresh(session);
+    activePane = std::min(activePane, paneCount() - 1);
+    const auto latest = session.snapshot();
+    if (latest && (!snapshot || latest->serial != snapshot->serial)) snapshot = latest;
+    if (snapshot && pinned && (pinned->x >= snapshot->extent.width || pinned->y >= snapshot->extent.height))
+        pinned.reset();
+}
+
+void AppState::setLayout(Layout layout) {
+    const ParameterInfo* info = document.find("view.layout");
+    if (info) setOnce("view.layout", info->options[static_cast<size_t>(layout)]);
+}
+
+AppState::Bookmarks& AppState::bookmarks() {
+    return bookmarksByScene[document.scene() ? document.scene()->path : std::string()];
+}
+
+std::string AppState::viewId(int pane, const char* name) const { return "view." + std::to_string(pane) + "." + name; }
+
+const PaneSnapshot* AppState::pane(int index) const {
+    if (!snapshot || static_cast<size_t>(index) >= snapshot->panes.size()) return nullptr;
+    return &snapshot->panes[static_cast<size_t>(index)];
+}
+
+const Image* AppState::bufferImage(int index) const {
+    const PaneSnapshot* shown = pane(index);
+    if (!shown) return nullptr;
+    const auto found = [](const auto& map, const std::string& key) -> const Image* {
+        const auto entry = map.find(key);
+        return entry == map.end() || !entry->second || entry->second->empty() ? nullptr : entry->second.get();
+    };
+    if (shown->buffer == "image") return found(snapshot->results, shown->module);
+    const Signal signal = signalByName(shown->buffer);
+    if (signal == Signal::Count) return found(snapshot->taps, shown->module + "-" + shown->buffer);
+    if (signalInfo(signal).isId || !snapshot->signals || !snapshot->signals->available().has(signal)) return nullptr;
+    const Image& image = (*snapshot->signals)[signal];
+    return image.empty() ? nullptr : &image;
+}
+
+const std::vector<BufferEntry>& AppState::buffers(int pane) {
+    const std::string name = module(pane);
+    const std::shared_ptr<const PosedScene> scene = snapshot ? snapshot->scene : nullptr;
+    if (scene != buffersOf_) buffers_.clear();
+    buffersOf_ = scene;
+    auto entry = buffers_.find(name);
+    if (entry == buffers_.end()) entry = buffers_.emplace(name, session.buffers(name)).first;
+    return entry->second;
+}
+
+void AppState::set(const std::string& id, const ParameterValue& value) {
+    try {
+        session.set(id, value);
+    } catch (const Error& error) {
+        log.error(error.what());
+    }
+}
+
+void AppState::setOnce(const std::string& id, const ParameterValue& value) {
+    set(id, value);
+    session.endEdit();
+}
+
+void AppState::setCamera(const Camera& camera) {
+    try {
+        session.setAll({{"camera.eye", camera.eye}, {"camera.look-at", camera.target}});
+    } catch (const Error& error) {
+        log.error(error.what());
+    }
+}
+
+void AppState::reset(const std::string& id) {
+    if (document.present()) setOnce(id, document.document().initial(id));
+}
+
+void AppState::open(const std::filesystem::path& path) {
+    session.open(path);
+    std::erase(recentScenes, path);
+    recentScenes.insert(recentScenes.begin(), path);
+    if (recentScenes.size() > 8) recentScenes.resize(8);
+    browserOpen = false;
+    pinned.reset();
+    view.fit();
+}
+
+}  // namespace lumi

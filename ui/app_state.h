@@ -1,0 +1,78 @@
+#pragma once
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "session/session.h"
+#include "ui/document_mirror.h"
+#include "ui/timing.h"
+#include "ui/view_transform.h"
+
+namespace lumi {
+
+enum class PanelTab { View, Render, Scene, Profile };
+
+/// What the window shows beside the document: never part of an image, so neither undone nor saved with it.
+struct AppState {
+    AppState(Session& session_, MessageLog& log_) : session(session_), log(log_) {}
+
+    Session& session;
+    MessageLog& log;
+    DocumentMirror document;
+    std::shared_ptr<const Snapshot> snapshot;  ///< of this frame; null before the first
+
+    int activePane = 0;
+    float wipe = 0.5f;  ///< of the pane's width
+    ViewTransform view;
+    bool loupe = false;
+    bool leftDragOrbits = true;
+    float flySpeed = 1;
+    bool flying = false;  ///< by keys, in the last frame
+    std::optional<Pixel> hovered, pinned;
+    Vec2 hoveredPaneSize{1};
+
+    PanelTab tab = PanelTab::View;
+    bool uiHidden = false, helpOpen = false, browserOpen = false, messagesOpen = false, bufferPickerWanted = false;
+    std::string parameterSearch;
+
+    using Bookmarks = std::array<std::optional<Camera>, 9>;
+    std::map<std::string, Bookmarks> bookmarksByScene;  ///< by the scene's path
+    std::vector<std::filesystem::path> recentScenes;
+    std::filesystem::path captures;  ///< folder for screenshots; empty: the current one
+
+    UiTiming timing;
+    std::string clipboard;            ///< text for the system's clipboard, taken by the window
+    bool windowShotWanted = false, quit = false;
+
+    /// Takes the session's present state. Once a frame, before anything is drawn.
+    void beginFrame();
+
+    Layout layout() const { return document.present() ? document.document().layout() : Layout::Single; }
+    void setLayout(Layout layout);
+    int paneCount() const { return layout() == Layout::Single ? 1 : 2; }
+    Bookmarks& bookmarks();
+    /// "view.0.exposure".
+    std::string viewId(int pane, const char* name) const;
+    std::string module(int pane) const { return document.text(viewId(pane, "module")); }
+    std::string buffer(int pane) const { return document.text(viewId(pane, "buffer")); }
+    const PaneSnapshot* pane(int index) const;
+    /// The picture of a pane before display conversion; null if it is an id buffer or not there.
+    const Image* bufferImage(int pane) const;
+    const std::vector<BufferEntry>& buffers(int pane);
+
+    /// Changes the document; what the session refuses is a message. endEdit() closes the step of undo.
+    void set(const std::string& id, const ParameterValue& value);
+    void setOnce(const std::string& id, const ParameterValue& value);
+    void setCamera(const Camera& camera);
+    void reset(const std::string& id);
+    void open(const std::filesystem::path& path);
+
+private:
+    std::map<std::string, std::vector<BufferEntry>> buffers_;
+    std::shared_ptr<const PosedScene> buffersOf_;
+};
+
+}  // namespace lumi

@@ -1,0 +1,192 @@
+#include "ui/commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "reconstruct/catalog.h"
+
+namespace lumi {
+
+namespace {
+
+void cycleModule(AppState& state, int by) {
+    const auto catalog = moduleCatalog();
+    const std::string now = state.module(state.activePane);
+    const auto count = static_cast<int>(catalog.size());
+    int index = 0;
+    while (index < count && now != catalog[static_cast<size_t>(index)].id) ++index;
+    const int next = index == count ? 0 : (index + by + count) % count;
+    state.setOnce(state.viewId(state.activePane, "module"), std::string(catalog[static_cast<size_t>(next)].id));
+}
+
+void showBuffer(AppState& state, int index) {
+    const auto& list = state.buffers(state.activePane);
+    if (static_cast<size_t>(index) < list.size())
+        state.setOnce(state.viewId(state.activePane, "buffer"), list[static_cast<size_t>(index)].name);
+}
+
+void changeExposure(AppState& state, float byEv) {
+    for (int pane = 0; pane < 2; ++pane) {
+        const std::string id = state.viewId(pane, "exposure");
+        const ParameterInfo* info = state.document.find(id);
+        if (!info) continue;
+        const auto low = static_cast<float>(info->min), high = static_cast<float>(info->max);
+        state.set(id, std::clamp(state.document.number(id, 0) + byEv, low, high));
+    }
+    state.session.endEdit();
+}
+
+void swapPanes(AppState& state) {
+    const auto first = state.document.group("view.0.");
+    std::vector<std::pair<std::string, ParameterValue>> values;
+    for (const ParameterInfo* info : first) {
+        const std::string otherId = "view.1." + info->id.substr(7);
+        const ParameterInfo* other = state.document.find(otherId);
+        if (!other) continue;
+        values.emplace_back(info->id, other->value);
+        values.emplace_back(otherId, info->value);
+    }
+    state.session.setAll(values);
+    state.session.endEdit();
+}
+
+void resetAll(AppState& state) {
+    std::vector<std::pair<std::string, ParameterValue>> values;
+    for (const std::string& id : state.document.changedIds())
+        values.emplace_back(id, state.document.document().initial(id));
+    state.session.setAll(values);
+    state.session.endEdit();
+}
+
+void recallBookmark(AppState& state, int index) {
+    const auto& camera = state.bookmarks()[static_cast<size_t>(index)];
+    if (!camera) {
+        state.log.info(fmt::format("Bookmark {} is empty; Ctrl+{} stores the camera there.", index + 1, index + 1));
+        return;
+    }
+    state.setCamera(*camera);
+    state.session.endEdit();
+}
+
+void closeTopmost(AppState& state) {
+    if (state.helpOpen)
+        state.helpOpen = false;
+    else if (state.browserOpen)
+        state.browserOpen = false;
+    else if (state.uiHidden)
+        state.uiHidden = false;
+    else if (state.pinned)
+        state.pinned.reset();
+    else if (state.messagesOpen)
+        state.messagesOpen = false;
+    else
+        state.quit = true;
+}
+
+std::string vectorText(const Vec3& v) { return fmt::format("{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z); }
+
+void runPictureCommand(AppState& state, Command command, int index) {
+    switch (command) {
+        case Command::ShowBuffer: showBuffer(state, index); break;
+        case Command::PickBuffer: state.bufferPickerWanted = true; break;
+        case Command::NextModule: cycleModule(state, 1); break;
+        case Command::PreviousModule: cycleModule(state, -1); break;
+        case Command::CycleLayout:
+            state.setLayout(static_cast<Layout>((static_cast<int>(state.layout()) + 1) % 3));
+            break;
+        case Command::SwapPanes: swapPanes(state); break;
+        case Command::ExposureDown: changeExposure(state, -0.25f); break;
+        case Command::ExposureUp: changeExposure(state, 0.25f); break;
+        case Command::Fit: state.view.fit(); break;
+        case Command::ActualSize: state.view.setZoom(1); break;
+        case Command::Loupe: state.loupe = !state.loupe; break;
+        default: break;
+    }
+}
+
+void runTimeCommand(AppState& state, Command command) {
+    Session& session = state.session;
+    switch (command) {
+        case Command::PlayTime: session.setPlaying(!session.playing()); break;
+        case Command::PauseRendering: session.setRendering(!session.rendering()); break;
+        case Command::Step: session.step(); break;
+        case Command::StepBack: session.stepBack(); break;
+        case Command::Restart: session.restart(); break;
+        case Command::ReloadScene: session.reload(); break;
+        case Command::Undo: session.undo(); break;
+        case Command::Redo: session.redo(); break;
+        default: break;
+    }
+}
+
+void runWindowCommand(AppState& state, Command command, int index) {
+    switch (command) {
+        case Command::ToggleOrbit: state.leftDragOrbits = !state.leftDragOrbits; break;
+        case Command::StoreBookmark:
+            state.bookmarks()[static_cast<size_t>(index)] = state.document.camera();
+            state.log.info(fmt::format("Camera stored as bookmark {}.", index + 1));
+            break;
+        case Command::RecallBookmark: recallBookmark(state, index); break;
+        case Command::CopyCamera:
+            state.clipboard = cameraAsCommandLine(state.document.camera());
+            state.log.info("Camera copied: " + state.clipboard);
+            break;
+        case Command::OpenScene: state.browserOpen = !state.browserOpen; break;
+        case Command::SavePicture: state.session.saveView(state.activePane, capturePath(state, "png")); break;
+        case Command::SaveBuffers: state.session.saveView(state.activePane, capturePath(state, "exr")); break;
+        case Command::SaveWindow: state.windowShotWanted = true; break;
+        case Command::ResetAll: resetAll(state); break;
+        case Command::ToggleUi: state.uiHidden = !state.uiHidden; break;
+        case Command::ToggleMessages: state.messagesOpen = !state.messagesOpen; break;
+        case Command::Help: state.helpOpen = !state.helpOpen; break;
+        case Command::Close: closeTopmost(state); break;
+        case Command::Quit: state.quit = true; break;
+        default: break;
+    }
+}
+
+std::string sceneStem(const AppState& state) {
+    const Scene* scene = state.document.scene();
+    const std::string name = scene ? std::filesystem::path(scene->path).stem().string() : std::string();
+    return name.empty() ? "scene" : name;
+}
+
+bool worksWithoutScene(Command command) {
+    return command == Command::OpenScene || command == Command::Help || command == Command::Close ||
+           command == Command::Quit || command == Command::ToggleUi || command == Command::ToggleMessages ||
+           command == Command::SaveWindow || command == Command::ReloadScene;
+}
+
+}  // namespace
+
+void runCommand(AppState& state, Command command, int index) {
+    if (!state.document.present() && !worksWithoutScene(command)) return;
+    try {
+        runPictureCommand(state, command, index);
+        runTimeCommand(state, command);
+        runWindowCommand(state, command, index);
+    } catch (const Error& error) {
+        state.log.error(error.what());
+    }
+}
+
+std::string cameraAsCommandLine(const Camera& camera) {
+    std::string text = "--set camera.eye=" + vectorText(camera.eye) + " --set camera.look-at=" + vectorText(camera.target);
+    if (camera.projection == Projection::Perspective) text += fmt::format(" --set camera.fov-y-deg={:.6g}", camera.fovYDeg);
+    return text;
+}
+
+std::filesystem::path windowShotPath(const AppState& state) {
+    return unusedPath(state.captures / (sceneStem(state) + ".window.png"));
+}
+
+std::filesystem::path capturePath(const AppState& state, const std::string& extension) {
+    const auto frame = state.snapshot ? std::max<FrameNumber>(state.snapshot->frame, 0) : 0;
+    return unusedPath(state.captures / fmt::format("{}.{}.{}.{:04}.{}", sceneStem(state), state.module(state.activePane),
+                                                   state.buffer(state.activePane), frame, extension));
+}
+
+}  // namespace lumi

@@ -1,0 +1,72 @@
+#include "ui/inspector.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "ui/widgets.h"
+
+namespace lumi {
+
+namespace {
+
+std::string number(float value) {
+    if (std::isnan(value)) return "nan";
+    if (std::isinf(value)) return value > 0 ? "+inf" : "-inf";
+    const float size = std::abs(value);
+    return size != 0 && (size < 1e-3f || size >= 1e5f) ? fmt::format("{:.2e}", value) : fmt::format("{:.4f}", value);
+}
+
+ImU32 channelColour(char channel) {
+    switch (channel) {
+        case 'R': case 'X': return IM_COL32(255, 138, 138, 255);
+        case 'G': return IM_COL32(128, 218, 150, 255);
+        case 'B': return IM_COL32(128, 178, 255, 255);
+        default: return palette::kText;
+    }
+}
+
+void drawRow(const PixelValue& row, bool shown) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    smallText(row.buffer, shown ? palette::kAccent : palette::kDim);
+    ImGui::TableNextColumn();
+    const WithFont mono(ui().fonts.mono);
+    const float cell = ImGui::CalcTextSize("-0.00e+00 ").x * 0.96f;
+    const size_t count = row.isId ? row.ids.size() : row.values.size();
+    const float start = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
+    for (size_t i = 0; i < count; ++i) {
+        const std::string text = row.isId ? fmt::format("{}", row.ids[i]) : number(row.values[i]);
+        const bool ends = !row.isId && cell * static_cast<float>(i + 1) > width + 1;
+        if (i > 0 && !ends && !row.isId) ImGui::SameLine(start + cell * static_cast<float>(i), 0);
+        if (i > 0 && row.isId) ImGui::SameLine(0, px(8));
+        const char channel = i < row.channels.size() ? row.channels[i] : 'Y';
+        const bool colour = row.channels.compare(0, 3, "RGB") == 0;
+        const bool bad = !row.isId && !std::isfinite(row.values[i]) && row.channels != "Z";
+        ImGui::TextColored(toVec4(bad ? palette::kError : colour ? channelColour(channel) : palette::kText), "%s", text.c_str());
+    }
+}
+
+}  // namespace
+
+void drawInspector(AppState& state) {
+    const std::optional<Pixel> pixel = state.pinned ? state.pinned : state.hovered;
+    if (!pixel || !state.snapshot) {
+        dimText("Point at the picture; a click pins a pixel.");
+        return;
+    }
+    {
+        const WithFont mono(ui().fonts.mono);
+        ImGui::Text("(%d, %d)", pixel->x, pixel->y);
+    }
+    ImGui::SameLine(0, px(10));
+    smallText(state.pinned ? "pinned; click it again to release" : "under the pointer", state.pinned ? palette::kAccent : palette::kDim);
+    if (!ImGui::BeginTable("pixel", 2, ImGuiTableFlags_RowBg)) return;
+    ImGui::TableSetupColumn("buffer", ImGuiTableColumnFlags_WidthFixed, px(112));
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
+    const std::string shown = state.buffer(state.activePane);
+    for (const PixelValue& row : state.session.inspect(*state.snapshot, *pixel)) drawRow(row, row.buffer == shown);
+    ImGui::EndTable();
+}
+
+}  // namespace lumi

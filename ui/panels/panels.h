@@ -1,0 +1,40 @@
+#pragma once
+#include "ui/app_state.h"
+#include "ui/context.h"
+
+namespace lumi {
+
+// Each draws one part of the window into `area` (framebuffer pixels), or over it.
+
+void drawToolbar(AppState& state, const ImRect& area);
+void drawStatusBar(AppState& state, const ImRect& area);
+/// The right-hand panel: a row of tabs and the panel chosen.
+void drawSidePanel(AppState& state, const ImRect& area);
+
+void drawViewPanel(AppState& state);
+void drawRenderPanel(AppState& state);
+void drawScenePanel(AppState& state);
+void drawProfilePanel(AppState& state);
+/// Cameras of the scene and bookmarks; a part of the scene panel.
+void drawCameras(AppState& state);
+
+/// The drawer above the status bar, and the newest message over the picture for a few seconds.
+void drawMessages(AppState& state, const ImRect& area);
+void drawToast(AppState& state, const ImRect& area);
+
+void drawHelp(AppState& state, const ImRect& area);
+void drawSceneBrowser(AppState& state, const ImRect& area);
+/// What stands where the picture will be: the welcome page before a scene is open, progress while one loads.
+void drawEmptyPicture(AppState& state, const ImRect& area);
+
+/// Window flags of parts that stay where they are put.
+constexpr ImGuiWindowFlags kFixedWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                          ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
+/// Begins a window of exactly `area`.
+void beginFixed(const char* name, const ImRect& area, ImU32 colour, ImVec2 padding, ImGuiWindowFlags extra = 0);
+void endFixed();
+
+/// "Sponza" for /a/b/Sponza.gltf, or the scene's own title.
+std::string sceneName(const AppState& state);
+
+}  // namespace lumi

@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include "ui/commands.h"
+#include "ui/panels/panels.h"
+#include "ui/widgets.h"
+
+namespace lumi {
+
+namespace {
+
+Icon iconOf(Severity severity) {
+    return severity == Severity::Error ? Icon::Error : severity == Severity::Warning ? Icon::Warning : Icon::Info;
+}
+ImU32 colourOf(Severity severity) {
+    return severity == Severity::Error ? palette::kError : severity == Severity::Warning ? palette::kWarning : palette::kDim;
+}
+
+std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+/// Facts about the picture, right-aligned; as many as fit.
+std::string facts(const AppState& state) {
+    if (!state.snapshot) return {};
+    const Snapshot& s = *state.snapshot;
+    return fmt::format("{} x {}    {:.0f}%    {:.1f} ms    {:.1f} Mray/s", s.extent.width, s.extent.height,
+                       static_cast<double>(100 * state.view.zoom()), s.frameMs, s.raysPerSecond * 1e-6);
+}
+
+}  // namespace
+
+void drawStatusBar(AppState& state, const ImRect& area) {
+    beginFixed("status", area, palette::kBar, ImVec2(0, 0));
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddLine(ImVec2(area.Min.x, area.Min.y + 0.5f), ImVec2(area.Max.x, area.Min.y + 0.5f), palette::kBorder);
+    const WithFont small(ui().fonts.small);
+    const float y = std::floor(area.GetCenter().y - 0.5f * ImGui::GetFontSize());
+    const std::string right = facts(state);
+    const float rightWidth = ImGui::CalcTextSize(right.c_str()).x;
+    const bool roomForBoth = area.GetWidth() > rightWidth + px(220);
+    if (roomForBoth) list.AddText(ImVec2(area.Max.x - rightWidth - px(14), y), palette::kDim, right.c_str());
+
+    const float width = area.GetWidth() - (roomForBoth ? rightWidth + px(40) : 0);
+    ImGui::SetCursorScreenPos(area.Min);
+    if (ImGui::InvisibleButton("messages", ImVec2(width, area.GetHeight()))) runCommand(state, Command::ToggleMessages);
+    markItem("messages");
+    const bool hovered = ImGui::IsItemHovered();
+    const std::vector<Message> messages = state.log.messages();
+    if (messages.empty()) {
+        list.AddText(ImVec2(area.Min.x + px(14), y), palette::kFaint, "F1 shows all keys");
+    } else {
+        const Message& last = messages.back();
+        drawIcon(list, iconOf(last.severity), ImVec2(area.Min.x + px(20), area.GetCenter().y), px(13), colourOf(last.severity));
+        const std::string text = elided(firstLine(last.text), width - px(60));
+        list.AddText(ImVec2(area.Min.x + px(34), y), hovered ? palette::kText : palette::kDim, text.c_str());
+        if (hovered) tooltip(state.messagesOpen ? "Hide messages" : "Show all messages", "", shortcutText(Command::ToggleMessages));
+    }
+    endFixed();
+}
+
+void drawMessages(AppState& state, const ImRect& area) {
+    if (!state.messagesOpen) return;
+    const float height = std::min(px(210), 0.5f * area.GetHeight());
+    const ImRect box(ImVec2(area.Min.x, area.Max.y - height), area.Max);
+    ImGui::SetNextWindowFocus();
+    beginFixed("message-drawer", box, IM_COL32(22, 23, 26, 250), ImVec2(px(14), px(10)));
+    heading("Messages");
+    ImGui::SameLine(ImGui::GetWindowWidth() - px(112));
+    if (ImGui::SmallButton("Clear")) state.log.clear();
+    markItem("clear-messages");
+    ImGui::SameLine(ImGui::GetWindowWidth() - px(42));
+    if (iconButton("close-messages", Icon::Close, "Close", false, 22)) state.messagesOpen = false;
+    ImGui::BeginChild("rows");
+    for (const Message& message : state.log.messages()) {
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        drawIcon(*ImGui::GetWindowDrawList(), iconOf(message.severity), at + ImVec2(px(8), 0.5f * ImGui::GetTextLineHeight()), px(13), colourOf(message.severity));
+        ImGui::SetCursorPosX(px(26));
+        ImGui::PushTextWrapPos(0);
+        ImGui::TextUnformatted(message.text.c_str());
+        ImGui::PopTextWrapPos();
+        if (message.repeats > 1) smallText(fmt::format("      {} times", message.repeats), palette::kFaint);
+    }
+    if (state.log.messages().empty()) dimText("Nothing to report.");
+    ImGui::EndChild();
+    endFixed();
+}
+
+void drawToast(AppState& state, const ImRect& area) {
+    constexpr double kSeconds = 7;
+    static size_t seen = 0;      // of one window, like ImGui's own state
+    static double since = -100;
+    const std::vector<Message> messages = state.log.messages();
+    if (messages.size() != seen) {
+        if (messages.size() > seen && messages.back().severity != Severity::Info) since = ImGui::GetTime();
+        seen = messages.size();
+    }
+    const double age = ImGui::GetTime() - since;
+    if (age > kSeconds || messages.empty() || state.messagesOpen) return;
+    const Message& last = messages.back();
+    const auto alpha = static_cast<float>(std::clamp((kSeconds - age) * 2, 0.0, 1.0));
+    const float width = std::min(px(560), area.GetWidth() - px(40));
+    const ImVec2 textSize = ImGui::CalcTextSize(last.text.c_str(), nullptr, false, width - px(60));
+    const ImVec2 size(std::min(width, textSize.x + px(60)), textSize.y + px(22));
+    const ImVec2 corner(std::floor(area.GetCenter().x - 0.5f * size.x), std::floor(area.Max.y - size.y - px(20)));
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    list.AddRectFilled(corner, corner + size, withAlpha(IM_COL32(28, 29, 33, 250), alpha), px(6));
+    list.AddRect(corner, corner + size, withAlpha(colourOf(last.severity), 0.6f * alpha), px(6));
+    drawIcon(list, iconOf(last.severity), corner + ImVec2(px(22), 0.5f * size.y), px(16), withAlpha(colourOf(last.severity), alpha));
+    list.AddText(nullptr, 0, corner + ImVec2(px(42), px(11)), withAlpha(palette::kText, alpha), last.text.c_str(), nullptr, width - px(60));
+}
+
+}  // namespace lumi

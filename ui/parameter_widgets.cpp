@@ -1,0 +1,195 @@
+#include "ui/parameter_widgets.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/widgets.h"
+
+namespace lumi {
+
+namespace {
+
+constexpr double kWidestSlider = 1e5;  ///< wider linear ranges are dragged, not slid
+
+std::string rangeText(const ParameterInfo& info) {
+    if (info.type != ParameterType::Number && info.type != ParameterType::Integer) return {};
+    return fmt::format("{:.6g} to {:.6g}{}{}", info.min, info.max, info.unit.empty() ? "" : " ", info.unit);
+}
+
+std::string numberFormat(const ParameterInfo& info) {
+    const double span = info.max - info.min;
+    std::string format = info.scale == Scale::Log ? "%.4g" : span <= 2 ? "%.3f" : span <= 50 ? "%.2f" : "%.4g";
+    if (!info.unit.empty()) format += " " + info.unit;
+    return format;
+}
+
+/// The filled part of a slider, under ImGui's own, whose frame and grab are made invisible.
+void drawFill(const ParameterInfo& info, double value, float width) {
+    double t = (value - info.min) / (info.max - info.min);
+    if (info.scale == Scale::Log && info.min > 0) t = std::log(value / info.min) / std::log(info.max / info.min);
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float height = ImGui::GetFrameHeight();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const bool hovered = ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(corner, corner + ImVec2(width, height));
+    list.AddRectFilled(corner, corner + ImVec2(width, height), hovered ? palette::kHovered : palette::kRaised, px(4));
+    const float filled = width * static_cast<float>(std::clamp(t, 0.0, 1.0));
+    if (filled < 1) return;
+    list.PushClipRect(corner, corner + ImVec2(filled, height), true);
+    list.AddRectFilled(corner, corner + ImVec2(width, height), withAlpha(palette::kAccentDeep, hovered ? 0.95f : 0.75f), px(4));
+    list.PopClipRect();
+}
+
+bool numberWidget(const ParameterInfo& info, float& value, float width) {
+    const auto low = static_cast<float>(info.min), high = static_cast<float>(info.max);
+    const std::string format = numberFormat(info);
+    ImGui::SetNextItemWidth(width);
+    if (info.scale == Scale::Linear && info.max - info.min > kWidestSlider) {
+        const float speed = std::max(std::abs(value) * 0.01f, 0.001f);
+        return ImGui::DragFloat("##value", &value, speed, low, high, format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+    }
+    drawFill(info, static_cast<double>(value), width);
+    ImGui::PushStyleColor(ImGuiCol_FrameBg, 0);
+    ImGui::PushStyleColor(ImGuiCol_FrameBgHovered, 0);
+    ImGui::PushStyleColor(ImGuiCol_FrameBgActive, 0);
+    ImGui::PushStyleColor(ImGuiCol_SliderGrab, 0);
+    ImGui::PushStyleColor(ImGuiCol_SliderGrabActive, 0);
+    const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat |
+                                   (info.scale == Scale::Log ? ImGuiSliderFlags_Logarithmic : 0);
+    const bool changed = ImGui::SliderFloat("##value", &value, low, high, format.c_str(), flags);
+    ImGui::PopStyleColor(5);
+    return changed;
+}
+
+bool integerWidget(const ParameterInfo& info, int& value, float width) {
+    const int low = static_cast<int>(info.min), high = static_cast<int>(info.max);
+    const std::string format = info.unit.empty() ? "%d" : "%d " + info.unit;
+    ImGui::SetNextItemWidth(width);
+    const bool wide = info.max - info.min > 4096;
+    if (wide) return ImGui::DragInt("##value", &value, std::max(1.0f, 0.01f * static_cast<float>(std::abs(value))), low, high,
+                                    format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+    drawFill(info, value, width);
+    ImGui::PushStyleColor(ImGuiCol_FrameBg, 0);
+    ImGui::PushStyleColor(ImGuiCol_FrameBgHovered, 0);
+    ImGui::PushStyleColor(ImGuiCol_FrameBgActive, 0);
+    ImGui::PushStyleColor(ImGuiCol_SliderGrab, 0);
+    ImGui::PushStyleColor(ImGuiCol_SliderGrabActive, 0);
+    const ImGuiSliderFlags flags =
+        ImGuiSliderFlags_AlwaysClamp | (info.scale == Scale::Log ? ImGuiSliderFlags_Logarithmic : 0);
+    const bool changed = ImGui::SliderInt("##value", &value, low, high, format.c_str(), flags);
+    ImGui::PopStyleColor(5);
+    return changed;
+}
+
+std::optional<std::string> choiceWidget(const ParameterInfo& info, const std::string& value, float width) {
+    std::optional<std::string> chosen;
+    ImGui::SetNextItemWidth(width);
+    if (!ImGui::BeginCombo("##value", value.c_str(), ImGuiComboFlags_HeightLarge)) return chosen;
+    for (const std::string& option : info.options) {
+        if (ImGui::Selectable(option.c_str(), option == value)) chosen = option;
+        markItem(info.id + ":" + option);
+        if (option == value) ImGui::SetItemDefaultFocus();
+    }
+    ImGui::EndCombo();
+    return chosen;
+}
+
+bool colourWidget(const ParameterInfo& info, Vec3& value, float width) {
+    ImGui::SetNextItemWidth(width);
+    ImGuiColorEditFlags flags = ImGuiColorEditFlags_Float | ImGuiColorEditFlags_PickerHueWheel;
+    if (info.max > 1) flags |= ImGuiColorEditFlags_HDR;
+    const bool changed = ImGui::ColorEdit3("##value", &value.x, flags);
+    value = glm::clamp(value, Vec3(0), Vec3(static_cast<float>(info.max)));
+    return changed;
+}
+
+bool vectorWidget(const ParameterInfo& info, Vec3& value, float width) {
+    ImGui::SetNextItemWidth(width);
+    const float speed = std::max(glm::length(value) * 0.005f, 0.002f);
+    return ImGui::DragFloat3("##value", &value.x, speed, 0, 0, "%.3g");
+}
+
+void valueWidget(const ParameterInfo& info, float width, ParameterEdit& edit) {
+    ParameterValue value = info.value;
+    bool changed = false;
+    switch (info.type) {
+        case ParameterType::Number: changed = numberWidget(info, std::get<float>(value), width); break;
+        case ParameterType::Integer: changed = integerWidget(info, std::get<int>(value), width); break;
+        case ParameterType::Toggle: changed = toggleSwitch("##value", std::get<bool>(value)); break;
+        case ParameterType::Colour: changed = colourWidget(info, std::get<Vec3>(value), width); break;
+        case ParameterType::Vector: changed = vectorWidget(info, std::get<Vec3>(value), width); break;
+        case ParameterType::Choice:
+            if (const auto chosen = choiceWidget(info, std::get<std::string>(value), width)) {
+                value = *chosen;
+                changed = edit.finished = true;
+            }
+            break;
+        case ParameterType::Text:
+            ImGui::SetNextItemWidth(width);
+            changed = ImGui::InputText("##value", &std::get<std::string>(value), ImGuiInputTextFlags_EnterReturnsTrue);
+            break;
+    }
+    if (changed) edit.value = value;
+    if (info.type == ParameterType::Toggle) edit.finished = changed;
+    if (ImGui::IsItemDeactivated()) edit.finished = true;
+}
+
+}  // namespace
+
+ParameterEdit parameterRow(const ParameterInfo& info, bool changed) {
+    ParameterEdit edit;
+    ImGui::PushID(info.id.c_str());
+    const float available = ImGui::GetContentRegionAvail().x, resetSpace = px(24);
+    const float labelWidth = std::floor(0.4f * available), widgetWidth = available - labelWidth - resetSpace;
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float height = ImGui::GetFrameHeight();
+    ImGui::InvisibleButton("label", ImVec2(labelWidth - px(6), height));
+    const bool labelHovered = ImGui::IsItemHovered();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    if (changed) list.AddCircleFilled(corner + ImVec2(-px(7), 0.5f * height), px(2.5f), palette::kAccent);
+    const std::string label = elided(info.label, labelWidth - px(8));
+    list.AddText(corner + ImVec2(0, std::floor(0.5f * (height - ImGui::GetFontSize()))),
+                 changed || labelHovered ? palette::kText : palette::kDim, label.c_str());
+    if (labelHovered) {
+        const std::string range = rangeText(info);
+        tooltip(info.label, info.help + (range.empty() ? "" : "\n" + range) + "\n" + info.id);
+    }
+    ImGui::SameLine();
+    ImGui::SetCursorScreenPos(corner + ImVec2(labelWidth, 0));
+    const ImVec2 widgetCorner = ImGui::GetCursorScreenPos();
+    valueWidget(info, widgetWidth, edit);
+    markRect(info.id, widgetCorner, widgetCorner + ImVec2(info.type == ParameterType::Toggle ? px(34) : widgetWidth, height));
+    if (changed) {
+        ImGui::SameLine();
+        ImGui::SetCursorScreenPos(corner + ImVec2(available - px(20), 0.5f * (height - px(20))));
+        edit.reset = iconButton(("reset:" + info.id).c_str(), Icon::Reset, "Reset", false, 20);
+    }
+    ImGui::SetCursorScreenPos(corner + ImVec2(0, height + ImGui::GetStyle().ItemSpacing.y));
+    ImGui::PopID();
+    return edit;
+}
+
+int parameterRows(AppState& state, const std::string& prefix, const std::string& search,
+                  const std::set<std::string>& without) {
+    int count = 0;
+    for (const ParameterInfo* found : state.document.group(prefix)) {
+        const ParameterInfo info = *found;  // the mirror may be refreshed while an edit is applied
+        if (!info.active || without.count(info.id) || (!search.empty() && !matches(search, info.label) && !matches(search, info.id))) continue;
+        ++count;
+        const ParameterEdit edit = parameterRow(info, state.document.changed(info.id));
+        if (edit.value) state.set(info.id, *edit.value);
+        if (edit.reset) state.reset(info.id);
+        if (edit.finished) state.session.endEdit();
+    }
+    return count;
+}
+
+bool matches(const std::string& search, const std::string& text) {
+    const auto same = [](char a, char b) {
+        return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+    };
+    return std::search(text.begin(), text.end(), search.begin(), search.end(), same) != text.end();
+}
+
+}  // namespace lumi

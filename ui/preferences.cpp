@@ -1,0 +1,72 @@
+#include "ui/preferences.h"
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/files.h"
+
+namespace lumi {
+
+namespace {
+
+using nlohmann::json;
+
+json vectorJson(const Vec3& v) { return {v.x, v.y, v.z}; }
+Vec3 vectorFrom(const json& j) { return {j.at(0).get<float>(), j.at(1).get<float>(), j.at(2).get<float>()}; }
+
+json bookmarksJson(const AppState::Bookmarks& bookmarks) {
+    json list = json::object();
+    for (size_t i = 0; i < bookmarks.size(); ++i)
+        if (bookmarks[i])
+            list[std::to_string(i + 1)] = {{"eye", vectorJson(bookmarks[i]->eye)}, {"look-at", vectorJson(bookmarks[i]->target)}};
+    return list;
+}
+
+void readInto(AppState& state, const json& root) {
+    for (const json& path : root.value("recent", json::array())) state.recentScenes.emplace_back(path.get<std::string>());
+    const json byScene = root.value("bookmarks", json::object());
+    for (const auto& [scene, list] : byScene.items())
+        for (const auto& [number, camera] : list.items()) {
+            const auto index = static_cast<size_t>(std::stoi(number) - 1);
+            Camera stored;
+            stored.eye = vectorFrom(camera.at("eye"));
+            stored.target = vectorFrom(camera.at("look-at"));
+            state.bookmarksByScene[scene].at(index) = stored;
+        }
+}
+
+}  // namespace
+
+std::filesystem::path preferencesPath() {
+    if (const char* config = std::getenv("XDG_CONFIG_HOME"); config && *config)
+        return std::filesystem::path(config) / "lumiscope" / "window.json";
+    if (const char* home = std::getenv("HOME"); home && *home)
+        return std::filesystem::path(home) / ".config" / "lumiscope" / "window.json";
+    return {};
+}
+
+void loadPreferences(AppState& state, const std::filesystem::path& path) {
+    std::error_code ignored;
+    if (path.empty() || !std::filesystem::exists(path, ignored)) return;
+    try {
+        readInto(state, json::parse(readTextFile(path)));
+    } catch (const std::exception& error) {
+        state.log.warning(path.string() + ": preferences cannot be read: " + error.what());
+    }
+}
+
+void savePreferences(const AppState& state, const std::filesystem::path& path) {
+    if (path.empty()) return;
+    json recent = json::array(), bookmarks = json::object();
+    for (const auto& file : state.recentScenes) recent.push_back(file.string());
+    for (const auto& [scene, list] : state.bookmarksByScene)
+        if (const json stored = bookmarksJson(list); !stored.empty()) bookmarks[scene] = stored;
+    try {
+        writeFileAtomically(path, json{{"version", 1}, {"recent", recent}, {"bookmarks", bookmarks}}.dump(1));
+    } catch (const std::exception& error) {
+        state.log.warning(error.what());
+    }
+}
+
+}  // namespace lumi
