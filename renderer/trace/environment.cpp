@@ -12,11 +12,21 @@ namespace {
 constexpr int kMostColumns = 2048, kMostRows = 1024;
 
 /// Index i of the interval of an ascending table (count + 1 entries from 0 to 1) that holds u, never an empty one.
-int findInterval(const float* cdf, int count, float u) {
-    const int i = static_cast<int>(std::upper_bound(cdf, cdf + count + 1, u) - cdf) - 1;
-    int interval = std::clamp(i, 0, count - 1);
+/// guide[k] is the interval that holds k / count.
+int findInterval(const float* cdf, const uint16_t* guide, int count, float u) {
+    int interval = guide[std::min(static_cast<int>(u * static_cast<float>(count)), count - 1)];
+    while (interval < count - 1 && cdf[interval + 1] <= u) ++interval;
     while (interval > 0 && cdf[interval + 1] <= cdf[interval]) --interval;
     return interval;
+}
+
+void makeGuide(const float* cdf, int count, uint16_t* guide) {
+    int interval = 0;
+    for (int k = 0; k < count; ++k) {
+        const float u = static_cast<float>(k) / static_cast<float>(count);
+        while (interval < count - 1 && cdf[interval + 1] <= u) ++interval;
+        guide[k] = static_cast<uint16_t>(interval);
+    }
 }
 
 /// Running sums of `values` as a table from 0 to 1; a row without weight becomes uniform. Returns the sum.
@@ -49,13 +59,25 @@ void EnvironmentLight::build(const Environment& environment) {
     sin_ = std::sin(radians(environment.rotateDeg));
     if (image_ && (image_->empty() || image_->channels() < 3)) image_ = nullptr;
     if (!image_) {
-        rowCdf_ = {}, columnCdf_ = {};
+        rowCdf_ = {}, columnCdf_ = {}, rowGuide_ = {}, columnGuide_ = {}, texels_ = {};
         columns_ = rows_ = 0;
     } else if (!sameImage) {
+        buildTexels(*image_);
         buildTables(*image_);
     }
     meanLuminance_ = image_ ? imageMeanLuminance_ * scale_ : luminance(constant_);
     black_ = !(meanLuminance_ > 0) || !std::isfinite(meanLuminance_);
+}
+
+void EnvironmentLight::buildTexels(const Image& image) {
+    width_ = image.width(), height_ = image.height();
+    texels_.resize(static_cast<size_t>(width_) * static_cast<size_t>(height_));
+    parallelRanges(height_, 16, [&](int64_t begin, int64_t end) {
+        for (int y = static_cast<int>(begin); y < end; ++y)
+            for (int x = 0; x < width_; ++x)
+                texels_[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] =
+                    Vec3(image.at(0, x, y), image.at(1, x, y), image.at(2, x, y));
+    });
 }
 
 void EnvironmentLight::buildTables(const Image& image) {
@@ -93,37 +115,37 @@ void EnvironmentLight::buildTables(const Image& image) {
 
     rowCdf_.assign(static_cast<size_t>(rows_) + 1, 0);
     columnCdf_.assign(static_cast<size_t>(rows_) * static_cast<size_t>(columns_ + 1), 0);
+    rowGuide_.resize(static_cast<size_t>(rows_));
+    columnGuide_.resize(weights.size());
     std::vector<float> rowWeights(static_cast<size_t>(rows_));
     double total = 0, sines = 0;
     for (int row = 0; row < rows_; ++row) {
         const auto r = static_cast<size_t>(row);
         rowWeights[r] = static_cast<float>(makeCdf(&weights[r * static_cast<size_t>(columns_)], columns_,
                                                    &columnCdf_[r * static_cast<size_t>(columns_ + 1)]));
+        makeGuide(&columnCdf_[r * static_cast<size_t>(columns_ + 1)], columns_,
+                  &columnGuide_[r * static_cast<size_t>(columns_)]);
         total += rowLuminance[r];
         sines += std::sin(kPi * (row + 0.5) / rows_) * columns_;
     }
     makeCdf(rowWeights.data(), rows_, rowCdf_.data());
+    makeGuide(rowCdf_.data(), rows_, rowGuide_.data());
     imageMeanLuminance_ = static_cast<float>(total / sines);
 }
 
 Vec3 EnvironmentLight::radiance(const Vec3& direction) const {
-    if (!image_) return constant_;
-    const Image& image = *image_;
-    const int width = image.width(), height = image.height();
-    const Vec2 uv = latLongFromDirection(toImage(direction));
-    const float fx = uv.x * static_cast<float>(width) - 0.5f, fy = uv.y * static_cast<float>(height) - 0.5f;
-    const float floorX = std::floor(fx), floorY = std::floor(fy);
-    const float tx = fx - floorX, ty = fy - floorY;
-    const int x0 = (static_cast<int>(floorX) + width) % width, x1 = x0 + 1 < width ? x0 + 1 : 0;
-    const int y0 = std::clamp(static_cast<int>(floorY), 0, height - 1), y1 = std::clamp(static_cast<int>(floorY) + 1, 0, height - 1);
-    Vec3 result;
-    for (int c = 0; c < 3; ++c) {
-        const auto plane = image.plane(c);
-        const float top = plane.at(x0, y0) * (1 - tx) + plane.at(x1, y0) * tx;
-        const float bottom = plane.at(x0, y1) * (1 - tx) + plane.at(x1, y1) * tx;
-        result[c] = top * (1 - ty) + bottom * ty;
-    }
-    return result * scale_;
+    return image_ ? imageRadiance(latLongFromDirection(toImage(direction))) : constant_;
+}
+
+Vec3 EnvironmentLight::imageRadiance(Vec2 uv) const {
+    const float fx = uv.x * static_cast<float>(width_) + 0.5f, fy = uv.y * static_cast<float>(height_) + 0.5f;
+    // Texel centres are at halves: the pair around the point is (cell - 1, cell).
+    const int cellX = static_cast<int>(fx), cellY = static_cast<int>(fy);
+    const float tx = fx - static_cast<float>(cellX), ty = fy - static_cast<float>(cellY);
+    const int x0 = cellX > 0 ? cellX - 1 : width_ - 1, x1 = cellX < width_ ? cellX : 0;
+    const Vec3* top = &texels_[static_cast<size_t>(std::max(cellY - 1, 0)) * static_cast<size_t>(width_)];
+    const Vec3* bottom = &texels_[static_cast<size_t>(std::min(cellY, height_ - 1)) * static_cast<size_t>(width_)];
+    return ((top[x0] * (1 - tx) + top[x1] * tx) * (1 - ty) + (bottom[x0] * (1 - tx) + bottom[x1] * tx) * ty) * scale_;
 }
 
 float EnvironmentLight::density(int column, int row) const {
@@ -132,14 +154,16 @@ float EnvironmentLight::density(int column, int row) const {
            (columnCdf[column + 1] - columnCdf[column]) * static_cast<float>(rows_) * static_cast<float>(columns_);
 }
 
-Vec3 EnvironmentLight::sample(Vec2 u, float& pdf) const {
+Vec3 EnvironmentLight::sample(Vec2 u, float& pdf, Vec3& radiance) const {
     if (!image_) {
         pdf = pdfSphere();
+        radiance = constant_;
         return sampleSphere(u);
     }
-    const int row = findInterval(rowCdf_.data(), rows_, u.y);
+    const int row = findInterval(rowCdf_.data(), rowGuide_.data(), rows_, u.y);
     const float* columnCdf = &columnCdf_[static_cast<size_t>(row) * static_cast<size_t>(columns_ + 1)];
-    const int column = findInterval(columnCdf, columns_, u.x);
+    const int column = findInterval(
+        columnCdf, &columnGuide_[static_cast<size_t>(row) * static_cast<size_t>(columns_)], columns_, u.x);
     const auto within = [](const float* cdf, int i, float value) {
         const float size = cdf[i + 1] - cdf[i];
         return size > 0 ? std::clamp((value - cdf[i]) / size, 0.0f, 0x1.fffffep-1f) : 0.5f;
@@ -148,6 +172,7 @@ Vec3 EnvironmentLight::sample(Vec2 u, float& pdf) const {
                   (static_cast<float>(row) + within(rowCdf_.data(), row, u.y)) / static_cast<float>(rows_));
     const float sine = std::sin(uv.y * kPi);
     pdf = sine > 0 ? density(column, row) / (2 * kPi * kPi * sine) : 0;
+    radiance = imageRadiance(uv);
     return toWorld(directionFromLatLong(uv));
 }
 

@@ -17,15 +17,20 @@ public:
     bool black() const { return black_; }
     /// Radiance from unit world direction `direction`.
     Vec3 radiance(const Vec3& direction) const;
-    /// A direction with light and its density per solid angle.
-    Vec3 sample(Vec2 u, float& pdf) const;
+    /// A direction with light, its density per solid angle and its radiance.
+    Vec3 sample(Vec2 u, float& pdf, Vec3& radiance) const;
     float pdf(const Vec3& direction) const;
     /// Mean over the sphere of the luminance.
     float meanLuminance() const { return meanLuminance_; }
-    size_t byteCount() const { return (rowCdf_.size() + columnCdf_.size()) * sizeof(float); }
+    size_t byteCount() const {
+        return (rowCdf_.size() + columnCdf_.size()) * sizeof(float) + texels_.size() * sizeof(Vec3) +
+               (rowGuide_.size() + columnGuide_.size()) * sizeof(uint16_t);
+    }
 
 private:
+    void buildTexels(const Image& image);
     void buildTables(const Image& image);
+    Vec3 imageRadiance(Vec2 uv) const;
     Vec3 toImage(const Vec3& world) const { return {cos_ * world.x - sin_ * world.z, world.y, sin_ * world.x + cos_ * world.z}; }
     Vec3 toWorld(const Vec3& d) const { return {cos_ * d.x + sin_ * d.z, d.y, -sin_ * d.x + cos_ * d.z}; }
     float density(int column, int row) const;  ///< per unit square of the image
@@ -36,8 +41,11 @@ private:
     bool black_ = true;
     float imageMeanLuminance_ = 0, meanLuminance_ = 0;
     int columns_ = 0, rows_ = 0;
+    int width_ = 0, height_ = 0;
+    std::vector<Vec3> texels_;      ///< the image, interleaved
     std::vector<float> rowCdf_;     ///< rows_ + 1, ends at 1
     std::vector<float> columnCdf_;  ///< rows_ times columns_ + 1, each row ends at 1
+    std::vector<uint16_t> rowGuide_, columnGuide_;  ///< where to start looking in the tables [Chen & Asau 1974]
 };
 
 }  // namespace lumi

@@ -165,9 +165,8 @@ bool Lights::sample(const Vec3& position, Vec2 pick, Vec2 u, LightSample& out) c
         case Kind::Point: reached = samplePoint(points_[entry.index], position, out); break;
         case Kind::Directional: reached = sampleSun(suns_[entry.index], u, out); break;
         case Kind::Environment:
-            out.direction = out.position = environment_.sample(u, out.pdf);
+            out.direction = out.position = environment_.sample(u, out.pdf, out.radiance);
             out.distance = kInfinity;
-            out.radiance = environment_.radiance(out.direction);
             reached = out.pdf > 0;
             break;
     }

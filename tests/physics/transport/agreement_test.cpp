@@ -1,0 +1,174 @@
+// Ways to make the same image that must agree: sampling strategies, instancing, mirrored transforms, thread counts.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "base/parallel.h"
+#include "support/image_tests.h"
+#include "support/transport_scene.h"
+
+namespace lumi {
+namespace {
+
+using namespace test;
+
+constexpr Extent2 kExtent{24, 18};
+const SignalSet kMoments{Signal::Noisy, Signal::SampleVariance};
+
+/// Area light, sky with a bright side, rough metal, gloss and a diffuse floor.
+TinyScene mixedScene() {
+    TinyScene tiny;
+    tiny.add(floorMesh(8), lambert(Vec3(0.7f, 0.6f, 0.5f)));
+    tiny.add(sphereMesh(0.7f, 32, 16), metal(0.9f, 0.25f), translation(Vec3(-0.8f, 0.7f, 0)));
+    Material gloss;
+    gloss.baseColor = Vec3(0.2f, 0.5f, 0.3f);
+    gloss.roughness = 0.4f;
+    tiny.add(boxMesh(Vec3(0.8f)), gloss, translation(Vec3(0.8f, 0.4f, 0.3f)));
+    Material glow = lambert(0);
+    glow.emission = Vec3(3, 2, 1);
+    glow.doubleSided = false;
+    tiny.add(facetedSphere(0.15f, 8), glow, translation(Vec3(0.1f, 0.6f, 1)));
+    Light lamp;
+    lamp.type = LightType::Rectangle;
+    lamp.size = Vec2(1, 0.5f);
+    lamp.radiance = Vec3(4);
+    tiny.addLight(lamp, lookAt(Vec3(1, 3, 1), Vec3(0), Vec3(0, 0, 1)));
+    Light ball;
+    ball.type = LightType::Sphere;
+    ball.radius = 0.2f;
+    ball.radiance = Vec3(5, 1, 1);
+    tiny.addLight(ball, translation(Vec3(-1.6f, 1.5f, 0.8f)));
+    auto sky = std::make_shared<Image>(Extent2{16, 8}, 3);
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 16; ++x)
+            for (int c = 0; c < 3; ++c) sky->at(c, x, y) = y < 4 ? 0.3f + (x == 5 && y == 2 ? 6.0f : 0.0f) : 0.1f;
+    tiny.scene.environment.image = sky;
+    tiny.scene.environment.rotateDeg = 40;
+    return tiny;
+}
+
+Camera mixedCamera() { return lookFrom(Vec3(0.5f, 1.6f, 4.5f), Vec3(0, 0.5f, 0), 40); }
+
+Signals render(std::shared_ptr<const PosedScene> posed, const Camera& camera, int spp, PathSettings path, uint32_t seed,
+               const SignalSet& wanted = kMoments) {
+    Tracer tracer;
+    tracer.bind(std::move(posed));
+    Signals signals;
+    EXPECT_TRUE(tracer.sample(frameOf(camera, kExtent, spp, path, wanted, seed), signals));
+    EXPECT_EQ(tracer.counts().nonFinite, 0u);
+    return signals;
+}
+
+TEST(Strategies, MisLightAndBsdfConvergeToOneImage) {
+    const auto posed = mixedScene().pose();
+    const Signals mis = render(posed, mixedCamera(), 256, plainPaths(4, DirectStrategy::Mis), 1);
+    for (const auto strategy : {DirectStrategy::Light, DirectStrategy::Bsdf}) {
+        const Signals other = render(posed, mixedCamera(), 1024, plainPaths(4, strategy), 2 + static_cast<uint32_t>(strategy));
+        EXPECT_GE(agreeingShare(mis, other), 0.9975) << static_cast<int>(strategy);
+        EXPECT_LT(std::abs(biasInSigmas(mis, other)), 4) << static_cast<int>(strategy);
+    }
+}
+
+TEST(Strategies, RouletteIsUnbiased) {
+    const auto posed = mixedScene().pose();
+    PathSettings path = plainPaths(6);
+    const Signals plain = render(posed, mixedCamera(), 256, path, 1);
+    path.roulette = true;
+    path.rouletteDepth = 1;
+    const Signals cut = render(posed, mixedCamera(), 512, path, 2);
+    EXPECT_GE(agreeingShare(plain, cut), 0.9975);
+    EXPECT_LT(std::abs(biasInSigmas(plain, cut)), 4);
+}
+
+TEST(Strategies, SobolAndHaltonConvergeToTheSameImage) {
+    const auto posed = mixedScene().pose();
+    const Signals independent = render(posed, mixedCamera(), 512, plainPaths(3), 1);
+    PathSettings path = plainPaths(3);
+    path.sampler = SamplerKind::Sobol;
+    EXPECT_GE(agreeingShare(independent, render(posed, mixedCamera(), 256, path, 2)), 0.9975);
+    path.sampler = SamplerKind::Halton;
+    path.haltonLoop = 4096;
+    EXPECT_GE(agreeingShare(independent, render(posed, mixedCamera(), 256, path, 3)), 0.9975);
+}
+
+/// The mesh with a transform baked into its vertices.
+Mesh baked(const Mesh& mesh, const Mat4& matrix) {
+    Mesh result = mesh;
+    for (Vec3& p : result.positions) p = transformPoint(matrix, p);
+    const Mat3 normals = normalMatrix(matrix);
+    for (Vec3& n : result.normals) n = glm::normalize(normals * n);
+    if (isMirroring(matrix))
+        for (UVec3& t : result.triangles) std::swap(t.y, t.z);
+    return result;
+}
+
+TEST(Instances, AgreeWithFlattenedMeshes) {
+    const auto ball = std::make_shared<const Mesh>(sphereMesh(0.5f, 24, 12));
+    // Plain, sheared by rotation after scaling, mirrored, and mirrored with unequal scales.
+    const Mat4 turn = glm::mat4_cast(glm::angleAxis(0.7f, glm::normalize(Vec3(1, 2, 0.5f))));
+    const Mat4 places[] = {translation(Vec3(-1.2f, 0.5f, 0)) * scaling(Vec3(0.8f, 1, 0.6f)) * turn,
+                           translation(Vec3(0, 0.6f, 0)) * turn * scaling(Vec3(0.4f, 1.1f, 0.7f)),
+                           translation(Vec3(1.2f, 0.5f, 0)) * scaling(Vec3(-1, 1, 1)),
+                           translation(Vec3(0.4f, 0.4f, 1)) * turn * scaling(Vec3(0.5f, -0.8f, 0.3f))};
+    TinyScene shared, flat;
+    for (TinyScene* tiny : {&shared, &flat}) {
+        tiny->add(floorMesh(8), lambert(0.6f));
+        tiny->scene.environment.constant = Vec3(0.5f);
+        Light sun;
+        sun.type = LightType::Directional;
+        sun.angleDeg = 5;
+        tiny->addLight(sun, lookAt(Vec3(1, 2, 1), Vec3(0)));
+    }
+    const int a = shared.addMaterial(metal(0.8f, 0.5f)), b = flat.addMaterial(metal(0.8f, 0.5f));
+    for (const Mat4& place : places) {
+        shared.add(ball, a, place);
+        flat.add(std::make_shared<const Mesh>(baked(*ball, place)), b);
+    }
+    const Camera camera = lookFrom(Vec3(0.3f, 1.8f, 4), Vec3(0, 0.4f, 0), 40);
+    SignalSet wanted = kMoments;
+    wanted |= SignalSet{Signal::Normal, Signal::GeometricNormal, Signal::Position, Signal::ObjectId};
+    PathSettings path = plainPaths(3);
+    const Signals one = render(shared.pose(), camera, 128, path, 1, wanted);
+    const Signals two = render(flat.pose(), camera, 128, path, 2, wanted);
+    EXPECT_GE(agreeingShare(one, two), 0.9975);
+    EXPECT_LT(std::abs(biasInSigmas(one, two)), 4);
+
+    // Geometry of one sample, same random numbers.
+    const Signals g1 = render(shared.pose(), camera, 1, path, 3, wanted), g2 = render(flat.pose(), camera, 1, path, 3, wanted);
+    int same = 0, all = 0;
+    for (int y = 0; y < kExtent.height; ++y)
+        for (int x = 0; x < kExtent.width; ++x) {
+            if (g1.ids(Signal::ObjectId).at(0, x, y) != g2.ids(Signal::ObjectId).at(0, x, y)) continue;
+            ++all;
+            double worst = 0;
+            for (const Signal s : {Signal::Normal, Signal::GeometricNormal, Signal::Position})
+                for (int c = 0; c < 3; ++c) worst = std::max<double>(worst, std::abs(g1[s].at(c, x, y) - g2[s].at(c, x, y)));
+            same += worst < 2e-3;
+        }
+    EXPECT_GT(all, kExtent.area() * 98 / 100);
+    EXPECT_GE(same, all - 2);  // a ray may take the other triangle at an edge
+}
+
+TEST(Threads, AnyNumberGivesTheSameBytes) {
+    const auto posed = mixedScene().pose();
+    PathSettings path;
+    SignalSet wanted = SignalSet::all();
+    setThreadCount(1);
+    const Signals one = render(posed, mixedCamera(), 3, path, 5, wanted);
+    for (const int threads : {2, 8}) {
+        setThreadCount(threads);
+        const Signals many = render(posed, mixedCamera(), 3, path, 5, wanted);
+        for (int s = 0; s < kSignalCount; ++s) {
+            const auto signal = static_cast<Signal>(s);
+            const Image &a = one[signal], &b = many[signal];
+            ASSERT_EQ(a.size(), b.size());
+            EXPECT_EQ(std::memcmp(a.data(), b.data(), a.bytes()), 0) << signalInfo(signal).name << ", " << threads;
+            EXPECT_TRUE(one.ids(signal) == many.ids(signal)) << signalInfo(signal).name;
+        }
+        EXPECT_TRUE(one.noisySum() == many.noisySum());
+    }
+    setThreadCount(0);
+}
+
+}  // namespace
+}  // namespace lumi

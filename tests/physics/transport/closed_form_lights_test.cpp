@@ -1,0 +1,193 @@
+// Each light over a Lambertian plane, against the irradiance that a textbook gives.
+#include <gtest/gtest.h>
+
+#include "support/transport_scene.h"
+
+namespace lumi {
+namespace {
+
+using namespace test;
+
+constexpr float kAlbedo = 0.8f;
+constexpr double kMostSigmas = 4.5;
+
+/// Looks down at the origin of a floor that is lit by one light.
+Estimate seenOnFloor(const Light& light, const Mat4& worldFromLight, int count, DirectStrategy strategy) {
+    TinyScene tiny;
+    tiny.add(floorMesh(), lambert(kAlbedo));
+    tiny.addLight(light, worldFromLight);
+    Tracer tracer;
+    tracer.bind(tiny.pose());
+    // From the side and below every light.
+    return radianceAlong(tracer, Vec3(0.6f, 0.3f, 0.2f), Vec3(-0.6f, -0.3f, -0.2f), count, plainPaths(1, strategy));
+}
+
+Mat4 lightAt(const Vec3& position, const Vec3& target) { return lookAt(position, target, Vec3(0, 0, 1)); }
+
+class Strategies : public testing::TestWithParam<DirectStrategy> {};
+
+TEST_P(Strategies, SphereLight) {
+    Light light;
+    light.type = LightType::Sphere;
+    light.radius = 0.5f;
+    light.radiance = Vec3(3);
+    const Vec3 centre(0.7f, 1.5f, 0);
+    // pi L sin^2(half angle) cos(to the centre): the cosine integral over a cone above the horizon.
+    const double d2 = glm::dot(centre, centre);
+    const double expected = kAlbedo * 3 * (0.25 / d2) * (1.5 / std::sqrt(d2));
+    const Estimate e = seenOnFloor(light, lightAt(centre, Vec3(0)), 60000, GetParam());
+    EXPECT_LT(e.z(expected), kMostSigmas) << e.mean << " against " << expected;
+    if (GetParam() != DirectStrategy::Bsdf) {
+        EXPECT_LT(e.standardError, 2e-3 * expected);
+    }
+}
+
+TEST_P(Strategies, RectangleLight) {
+    Light light;
+    light.type = LightType::Rectangle;
+    light.size = Vec2(1.2f, 0.8f);
+    light.radiance = Vec3(2);
+    // Four corners of form factor from an element to a parallel rectangle above one of its corners.
+    const double x = 0.6 / 1.0, y = 0.4 / 1.0;
+    const double corner = (x / std::sqrt(1 + x * x) * std::atan(y / std::sqrt(1 + x * x)) +
+                           y / std::sqrt(1 + y * y) * std::atan(x / std::sqrt(1 + y * y))) / (2 * kPi);
+    const double expected = kAlbedo * 2 * 4 * corner;
+    const Estimate e = seenOnFloor(light, lightAt(Vec3(0, 1, 0), Vec3(0)), 60000, GetParam());
+    EXPECT_LT(e.z(expected), kMostSigmas) << e.mean << " against " << expected;
+}
+
+TEST_P(Strategies, SmallFarRectangleLight) {
+    Light light;
+    light.type = LightType::Rectangle;
+    light.size = Vec2(0.02f, 0.02f);
+    light.radiance = Vec3(1e4f);
+    const double expected = kAlbedo * 1e4 * 0.0004 / (kPi * 4);
+    const Estimate e = seenOnFloor(light, lightAt(Vec3(0, 2, 0), Vec3(0)), 40000, GetParam());
+    EXPECT_LT(std::abs(e.mean - expected), kMostSigmas * e.standardError + 1e-4 * expected);
+}
+
+TEST_P(Strategies, DiskLight) {
+    Light light;
+    light.type = LightType::Disk;
+    light.radius = 0.5f;
+    light.radiance = Vec3(2);
+    const double expected = kAlbedo * 2 * 0.25 / (0.25 + 1);
+    const Estimate e = seenOnFloor(light, lightAt(Vec3(0, 1, 0), Vec3(0)), 60000, GetParam());
+    EXPECT_LT(e.z(expected), kMostSigmas) << e.mean << " against " << expected;
+}
+
+TEST_P(Strategies, DirectionalLightOfTenDegrees) {
+    Light light;
+    light.type = LightType::Directional;
+    light.angleDeg = 10;
+    light.irradiance = Vec3(5);
+    const Vec3 from(0.5f, 1, 0.2f);
+    const double expected = kAlbedo / kPi * 5 * glm::normalize(from).y;
+    const Estimate e = seenOnFloor(light, lightAt(from, Vec3(0)), 60000, GetParam());
+    EXPECT_LT(e.z(expected), kMostSigmas) << e.mean << " against " << expected;
+}
+
+TEST_P(Strategies, EmissiveTriangles) {
+    // A mesh rectangle must do what the rectangle light does.
+    TinyScene tiny;
+    tiny.add(floorMesh(), lambert(kAlbedo));
+    Material glowing = lambert(0);
+    glowing.emission = Vec3(2);
+    glowing.doubleSided = false;
+    tiny.add(rectangleMesh(1.2f, 0.8f, Facing::MinusY), glowing, translation(Vec3(0, 1, 0)));
+    Tracer tracer;
+    tracer.bind(tiny.pose());
+    const double x = 0.6, y = 0.4;
+    const double corner = (x / std::sqrt(1 + x * x) * std::atan(y / std::sqrt(1 + x * x)) +
+                           y / std::sqrt(1 + y * y) * std::atan(x / std::sqrt(1 + y * y))) / (2 * kPi);
+    const double expected = kAlbedo * 2 * 4 * corner;
+    const Estimate e = radianceAlong(tracer, Vec3(0.6f, 0.3f, 0.2f), Vec3(-0.6f, -0.3f, -0.2f), 60000,
+                                     plainPaths(1, GetParam()));
+    EXPECT_LT(e.z(expected), kMostSigmas) << e.mean << " against " << expected;
+}
+
+TEST_P(Strategies, ConstantEnvironment) {
+    TinyScene tiny;
+    tiny.add(floorMesh(), lambert(kAlbedo));
+    tiny.scene.environment.constant = Vec3(1.5f);
+    Tracer tracer;
+    tracer.bind(tiny.pose());
+    const Estimate e = radianceAlong(tracer, Vec3(0.6f, 0.3f, 0.2f), Vec3(-0.6f, -0.3f, -0.2f), 40000,
+                                     plainPaths(1, GetParam()));
+    EXPECT_LT(e.z(kAlbedo * 1.5), kMostSigmas) << e.mean;
+}
+
+std::string strategyName(const testing::TestParamInfo<DirectStrategy>& instance) {
+    if (instance.param == DirectStrategy::Mis) return "mis";
+    return instance.param == DirectStrategy::Light ? "light" : "bsdf";
+}
+
+INSTANTIATE_TEST_SUITE_P(, Strategies,
+                         testing::Values(DirectStrategy::Mis, DirectStrategy::Light, DirectStrategy::Bsdf),
+                         strategyName);
+
+TEST(PointLight, InverseSquareAndCosine) {
+    Light light;
+    light.type = LightType::Point;
+    light.intensity = Vec3(6);
+    for (const Vec3 position : {Vec3(0, 1, 0), Vec3(0, 2, 0), Vec3(1, 1, 0.5f), Vec3(-3, 0.5f, 2)}) {
+        const double d2 = glm::dot(position, position);
+        const double expected = kAlbedo / kPi * 6 / d2 * position.y / std::sqrt(d2);
+        const Estimate e = seenOnFloor(light, translation(position), 4, DirectStrategy::Mis);
+        EXPECT_NEAR(e.mean, expected, 2e-5 * expected);
+        EXPECT_NEAR(seenOnFloor(light, translation(position), 4, DirectStrategy::Bsdf).mean, expected, 2e-5 * expected);
+    }
+}
+
+TEST(PointLight, RangeWindowEndsTheLight) {
+    Light light;
+    light.type = LightType::Point;
+    light.intensity = Vec3(6);
+    light.range = 2;
+    const double at1 = kAlbedo / kPi * 6 * (1 - 1.0 / 16);
+    EXPECT_NEAR(seenOnFloor(light, translation(Vec3(0, 1, 0)), 4, DirectStrategy::Mis).mean, at1, 1e-4 * at1);
+    EXPECT_EQ(seenOnFloor(light, translation(Vec3(0, 2.5f, 0)), 4, DirectStrategy::Mis).mean, 0);
+}
+
+TEST(SpotLight, ConesAndTheirEdge) {
+    Light light;
+    light.type = LightType::Spot;
+    light.intensity = Vec3(4);
+    light.innerConeDeg = 20, light.outerConeDeg = 40;
+    const double full = kAlbedo / kPi * 4;
+    const auto seen = [&](float offAxisDeg) {
+        // One metre above the origin, turned away from it about z.
+        const Mat4 turn = glm::mat4_cast(glm::angleAxis(radians(offAxisDeg), Vec3(0, 0, 1)));
+        const Mat4 frame = translation(Vec3(0, 1, 0)) * turn * lookAt(Vec3(0), Vec3(0, -1, 0), Vec3(0, 0, 1));
+        return seenOnFloor(light, frame, 4, DirectStrategy::Mis).mean;
+    };
+    EXPECT_NEAR(seen(0), full, 1e-4 * full);
+    EXPECT_NEAR(seen(19), full, 1e-4 * full);
+    EXPECT_EQ(seen(41), 0);
+    const double share = (std::cos(kPi / 6) - std::cos(kPi * 2 / 9)) / (std::cos(kPi / 9) - std::cos(kPi * 2 / 9));
+    EXPECT_NEAR(seen(30), full * share * share, 1e-3 * full);
+}
+
+TEST(DirectionalLight, DeltaGivesItsIrradiance) {
+    Light light;
+    light.type = LightType::Directional;
+    light.irradiance = Vec3(3);
+    const Vec3 from(0.5f, 1, 0.2f);
+    const double expected = kAlbedo / kPi * 3 * glm::normalize(from).y;
+    EXPECT_NEAR(seenOnFloor(light, lightAt(from, Vec3(0)), 4, DirectStrategy::Mis).mean, expected, 1e-5 * expected);
+}
+
+TEST(FlatLights, AreBlackFromBehindAndBlock) {
+    TinyScene tiny;
+    tiny.add(floorMesh(), lambert(kAlbedo));
+    Light light;
+    light.type = LightType::Rectangle;
+    tiny.addLight(light, lookAt(Vec3(0, 1, 0), Vec3(0, 2, 0), Vec3(0, 0, 1)));  // shines upwards
+    Tracer tracer;
+    tracer.bind(tiny.pose());
+    EXPECT_EQ(radianceAlong(tracer, Vec3(0, 0.5f, 0), Vec3(0, 1, 0), 4, plainPaths(1)).mean, 0);
+    EXPECT_EQ(radianceAlong(tracer, Vec3(0, 2, 0), Vec3(0, -1, 0), 4, plainPaths(1)).mean, 1);
+}
+
+}  // namespace
+}  // namespace lumi

@@ -1,0 +1,158 @@
+// Furnaces, glass, absorption and transparency, against closed forms.
+#include <gtest/gtest.h>
+
+#include "support/transport_scene.h"
+
+namespace lumi {
+namespace {
+
+using namespace test;
+
+constexpr double kMostSigmas = 4.5;
+
+TEST(Furnace, ConvexBodyUnderConstantSkyShowsItsAlbedo) {
+    for (const float albedo : {0.5f, 1.0f}) {
+        TinyScene tiny;
+        tiny.add(facetedSphere(1), lambert(albedo));
+        tiny.scene.environment.constant = Vec3(1);
+        Tracer tracer;
+        tracer.bind(tiny.pose());
+        for (const Vec3 from : {Vec3(0.2f, 0.3f, 4), Vec3(3, 0.1f, -2)}) {
+            const Estimate e = radianceAlong(tracer, from, Vec3(0.1f, 0, 0.2f) - from, 20000, plainPaths(4));
+            EXPECT_LT(e.z(albedo), kMostSigmas) << e.mean << " against " << albedo;
+        }
+    }
+}
+
+TEST(Furnace, ClosedSphereIsTheGeometricSeries) {
+    // Emission E and albedo a everywhere: E (1 + a + a^2 + ...) = E / (1 - a).
+    for (const auto strategy : {DirectStrategy::Mis, DirectStrategy::Light, DirectStrategy::Bsdf}) {
+        TinyScene tiny;
+        Material wall = lambert(0.5f);
+        wall.emission = Vec3(0.7f);
+        tiny.add(facetedSphere(2, 24), wall);
+        Tracer tracer;
+        tracer.bind(tiny.pose());
+        PathSettings path = plainPaths(24, strategy);
+        path.roulette = true;
+        const Estimate e = radianceAlong(tracer, Vec3(0.1f, 0.2f, 0.3f), Vec3(1, 0.4f, -0.3f), 40000, path);
+        EXPECT_LT(e.z(1.4), kMostSigmas) << e.mean << " with strategy " << static_cast<int>(strategy);
+        EXPECT_LT(e.standardError, 0.02);
+    }
+}
+
+TEST(Furnace, DepthCutsTheSeries) {
+    TinyScene tiny;
+    Material wall = lambert(0.5f);
+    wall.emission = Vec3(1);
+    tiny.add(facetedSphere(2, 24), wall);
+    Tracer tracer;
+    tracer.bind(tiny.pose());
+    double expected = 1;
+    for (int depth = 1; depth <= 3; ++depth) {
+        expected += std::pow(0.5, depth);
+        const Estimate e = radianceAlong(tracer, Vec3(0.1f, 0.2f, 0.3f), Vec3(1, 0.4f, -0.3f), 20000, plainPaths(depth));
+        EXPECT_LT(e.z(expected), kMostSigmas) << e.mean << " at depth " << depth;
+    }
+}
+
+Material glass(float roughness) {
+    Material m;
+    m.transmission = 1;
+    m.thickness = 1;
+    m.roughness = roughness;
+    m.ior = 1.5f;
+    return m;
+}
+
+TEST(Furnace, GlassSphereIsInvisible) {
+    for (const float roughness : {0.0f, 0.3f}) {
+        TinyScene tiny;
+        tiny.add(facetedSphere(1, 48), glass(roughness));
+        tiny.scene.environment.constant = Vec3(1);
+        Tracer tracer;
+        tracer.bind(tiny.pose());
+        const Estimate e = radianceAlong(tracer, Vec3(0.3f, 0.2f, 4), Vec3(-0.02f, 0.03f, -1), 20000, plainPaths(64));
+        EXPECT_NEAR(e.mean, 1, 0.01 + 3 * e.standardError) << "roughness " << roughness;
+    }
+}
+
+TEST(Absorption, SlabFollowsBeerLambert) {
+    // Straight through a slab with reflections back and forth: R + (1-R)^2 A / (1 - R A), sky 1 on all sides.
+    TinyScene tiny;
+    Material slab = glass(0);
+    slab.attenuationColor = Vec3(0.25f);
+    slab.attenuationDistance = 0.5f;
+    tiny.add(boxMesh(Vec3(4, 1, 4)), slab);
+    tiny.scene.environment.constant = Vec3(1);
+    Tracer tracer;
+    tracer.bind(tiny.pose());
+    const double r = 0.04, a = std::pow(0.25, 2.0);
+    const double expected = r + (1 - r) * (1 - r) * a / (1 - r * a);
+    const Estimate e = radianceAlong(tracer, Vec3(0.2f, 3, 0.1f), Vec3(0, -1, 0), 60000, plainPaths(32));
+    EXPECT_NEAR(e.mean, expected, kMostSigmas * e.standardError + 1e-3 * expected);
+}
+
+TEST(Alpha, BlendedCoverageIsAlpha) {
+    TinyScene tiny;
+    Material veil = lambert(0);
+    veil.alphaMode = AlphaMode::Blend;
+    veil.alpha = 0.3f;
+    veil.emission = Vec3(1);
+    tiny.add(rectangleMesh(2, 2, Facing::Z), veil);
+    Tracer tracer;
+    tracer.bind(tiny.pose());
+    const Estimate e = radianceAlong(tracer, Vec3(0.1f, 0.2f, 3), Vec3(0, 0, -1), 20000, plainPaths(1));
+    EXPECT_LT(e.z(0.3), kMostSigmas) << e.mean;
+}
+
+TEST(Alpha, BlendedShadowLetsTheRestThrough) {
+    TinyScene tiny;
+    tiny.add(floorMesh(), lambert(1));
+    Material veil = lambert(0);
+    veil.alphaMode = AlphaMode::Blend;
+    veil.alpha = 0.3f;
+    // Twice the same mesh: through Embree instances.
+    const auto sheet = std::make_shared<const Mesh>(rectangleMesh(2, 2, Facing::Y));
+    const int material = tiny.addMaterial(veil);
+    tiny.add(sheet, material, translation(Vec3(0, 1, 0)));
+    tiny.add(sheet, material, translation(Vec3(0, 1.5f, 0)));
+    Light sun;
+    sun.type = LightType::Directional;
+    sun.irradiance = Vec3(kPi);
+    tiny.addLight(sun, lookAt(Vec3(0, 1, 0), Vec3(0), Vec3(0, 0, 1)));
+    Tracer tracer;
+    tracer.bind(tiny.pose());
+    const Estimate e = radianceAlong(tracer, Vec3(0, 0.5f, 0), Vec3(0.1f, -1, 0), 20000, plainPaths(1));
+    EXPECT_LT(e.z(0.49), kMostSigmas) << e.mean;
+}
+
+TEST(Alpha, MaskIsAllOrNothing) {
+    for (const float alpha : {0.4f, 0.6f}) {
+        TinyScene tiny;
+        Material leaf = lambert(0);
+        leaf.alphaMode = AlphaMode::Mask;
+        leaf.alphaCutoff = 0.5f;
+        leaf.alpha = alpha;
+        leaf.emission = Vec3(1);
+        tiny.add(rectangleMesh(2, 2, Facing::Z), leaf);
+        Tracer tracer;
+        tracer.bind(tiny.pose());
+        EXPECT_EQ(radianceAlong(tracer, Vec3(0, 0, 3), Vec3(0.01f, 0, -1), 64, plainPaths(1)).mean, alpha > 0.5f ? 1 : 0);
+    }
+}
+
+TEST(Regularize, WidensLobesOnlyAfterDiffuseOnes) {
+    TinyScene tiny;
+    tiny.add(floorMesh(), metal(0.9f, 0.1f));
+    tiny.scene.environment.constant = Vec3(1);
+    Tracer tracer;
+    tracer.bind(tiny.pose());
+    PathSettings path = plainPaths(2);
+    const double before = radianceAlong(tracer, Vec3(0, 1, 0), Vec3(1, -1, 0), 256, path).mean;
+    path.regularize = true;
+    EXPECT_EQ(radianceAlong(tracer, Vec3(0, 1, 0), Vec3(1, -1, 0), 256, path).mean, before);
+}
+
+}  // namespace
+}  // namespace lumi
