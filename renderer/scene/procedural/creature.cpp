@@ -235,7 +235,7 @@ private:
             kRings);
         std::vector<float> radii;
         for (const Vec3& r : shape) radii.push_back(r.x);
-        Mesh body = tube(path, radii, 40);
+        Mesh body = tube(path, radii, 36);
         std::vector<float> place;
         // uv.y of a tube is its length along the path, which orders the rings exactly.
         float whole = 0;
@@ -292,7 +292,7 @@ private:
                                         1));
         addSkinned(mesh, influences, limb, kBack, Vec3(1), weigh);
         // A broad foot with three claws.
-        Mesh foot = cushionBox({0.088f, 0.05f, 0.12f}, 0.024f, 0.004f, 4, 4);
+        Mesh foot = cushionBox({0.088f, 0.05f, 0.12f}, 0.024f, 0.004f, 3, 2);
         Mesh placedFoot;
         append(placedFoot, foot, 0, placed({ankle.x, 0.027f, ankle.z + 0.022f}));
         addSkinned(mesh, influences, placedFoot, kBack, {0.04f, 0.17f, 0.21f},
@@ -314,7 +314,7 @@ private:
                 const float a = kPi * static_cast<float>(k) / 14;
                 half.push_back({k % 14 == 0 ? 0 : radius * std::sin(a), -radius * std::cos(a)});
             }
-            return lathe(half, 24);
+            return lathe(half, 18);
         };
         for (const float side : {-1.0f, 1.0f}) {
             Mesh eye, pupil, nostril;
@@ -338,7 +338,7 @@ private:
             const float radius =
                 0.020f + 0.128f * std::exp(-sqr((s - 0.49f) / 0.15f)) + 0.034f * glm::smoothstep(0.62f, 0.75f, s);
             const float size = 0.034f + 0.034f * std::exp(-sqr((s - 0.52f) / 0.22f));
-            Mesh plate = cushionBox({0.016f, size * 1.7f, size * 1.25f}, 0.0075f, 0, 4, 3);
+            Mesh plate = cushionBox({0.016f, size * 1.7f, size * 1.25f}, 0.0075f, 0, 2, 3);
             deform(
                 plate,
                 [&](const Vec3& p) {

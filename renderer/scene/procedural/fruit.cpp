@@ -47,7 +47,7 @@ public:
         Profile profile = contour(kind_);
         float top = 0;
         for (ProfilePoint& p : profile) top = std::max(top, p.height);
-        Mesh skin = lathe(smoothProfile(profile, 6), 96);
+        Mesh skin = lathe(smoothProfile(profile, 4), 72);
         for (size_t i = 0; i < skin.positions.size(); ++i) {
             const Vec3 p = skin.positions[i];
             skin.uv[0][i] = {skin.uv[0][i].x / kPi, p.y / top};
@@ -140,11 +140,11 @@ public:
         result.slots = {opaqueSlot("skin", {0.085f, 0.018f, 0.055f}, 0.25f),
                         opaqueSlot("stalk", {0.16f, 0.13f, 0.05f}, 0.8f)};
         Profile round;
-        for (int k = 0; k <= 20; ++k) {
-            const float a = kPi * static_cast<float>(k) / 20;
-            round.push_back({k % 20 == 0 ? 0 : 0.5f * diameter_ * std::sin(a), -0.55f * diameter_ * std::cos(a)});
+        for (int k = 0; k <= 14; ++k) {
+            const float a = kPi * static_cast<float>(k) / 14;
+            round.push_back({k % 14 == 0 ? 0 : 0.5f * diameter_ * std::sin(a), -0.55f * diameter_ * std::cos(a)});
         }
-        Mesh sphere = lathe(round, 32);
+        Mesh sphere = lathe(round, 24);
         tidy(sphere);
         const auto berry = std::make_shared<const Mesh>(std::move(sphere));
         std::vector<Vec3> centres;

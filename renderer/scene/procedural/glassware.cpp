@@ -66,11 +66,11 @@ public:
         all.push_back({outer.back().radius - wall_ * 0.45f, height_ + wall_ * 0.45f, false});
         all.insert(all.end(), inner.begin(), inner.end());
         ProceduralResult result =
-            onePart(lathe(smoothProfile(all, 8), segments_),
+            onePart(lathe(smoothProfile(all, 5), segments_),
                     {glassSlot("glass"), glassSlot("liquid", {0.42f, 0.012f, 0.02f}, 0.012f, 1.345f)});
         result.parts[0].name = "glass";
         if (fill_ > 0) {
-            const Profile hollow = smoothProfile(inner, 8);
+            const Profile hollow = smoothProfile(inner, 5);
             const float floor = hollow.back().height, level = floor + (height_ - floor) * fill_;
             Mesh wine = liquid(hollow, level, 0.0002f, segments_);
             wine.material = 1;
@@ -137,12 +137,12 @@ public:
         all.push_back({0.0455f * h - wall * 0.5f, 0.988f * h, false});
         all.insert(all.end(), inner.begin(), inner.end());
         ProceduralResult result = onePart(
-            lathe(smoothProfile(all, 6), segments_),
+            lathe(smoothProfile(all, 4), segments_),
             {glassSlot("glass", {0.10f, 0.30f, 0.08f}, 0.004f, 1.52f),
              glassSlot("liquid", {0.35f, 0.01f, 0.02f}, 0.012f, 1.345f),
              opaqueSlot("cork", {0.48f, 0.31f, 0.17f}, 0.9f), opaqueSlot("label", {0.80f, 0.75f, 0.62f}, 0.8f)});
         result.parts[0].name = "glass";
-        const Profile hollow = smoothProfile(inner, 6);
+        const Profile hollow = smoothProfile(inner, 4);
         if (fill_ > 0) {
             // The floor rises in the middle, so the liquid rests on a plane just above it.
             Profile cavity;

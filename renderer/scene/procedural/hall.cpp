@@ -119,7 +119,7 @@ private:
         const auto column = Placer::share(hall::column(tall, columnRadius_ * (floor == 0 ? 1 : 0.88f), flutes_));
         const auto pier = Placer::share(hall::pier(tall, columnRadius_ * 2.9f));
         const auto arch = Placer::share(archPanel(bay_, r + kOverArch, kThickness, 0.02f, r, true));
-        const auto rail = floor > 0 ? Placer::share(balustrade(bay_ - columnRadius_ * 2.4f, 0.95f, 0.36f)) : nullptr;
+        const auto rail = floor > 0 ? Placer::share(balustrade(bay_ - columnRadius_ * 2.4f, 0.95f, 0.46f)) : nullptr;
         forCourtEdge(
             [&](const Vec3& at, float yaw, bool corner) {
                 placer.put(corner ? "pier" : "column", corner ? pier : column, at + Vec3(0, y, 0), yaw);
@@ -128,7 +128,7 @@ private:
                 placer.put("arch", arch, at + Vec3(0, y + tall, 0), yaw);
                 if (rail) placer.put("balustrade", rail, at + Vec3(0, y, 0), yaw);
             });
-        addVaults(placer, y + tall);
+        addVaults(placer, floor, y + tall);
         addOuterWalls(placer, floor, y, whole);
         addSlab(placer, y + whole);
         return whole;
@@ -152,7 +152,7 @@ private:
             }
     }
 
-    void addVaults(Placer& placer, float y) const {
+    void addVaults(Placer& placer, int floor, float y) const {
         const auto vault = Placer::share(groinVault(bay_, bay_, archRadius() + 0.2f, 0.24f));
         const auto light = lanterns_ ? Placer::share(lantern(0.9f, 0.26f)) : nullptr;
         for (int i = -1; i <= baysX_; ++i)
@@ -162,8 +162,17 @@ private:
                 const Vec3 at(-halfX() + bay_ * (static_cast<float>(i) + 0.5f), y,
                               -halfZ() + bay_ * (static_cast<float>(k) + 0.5f));
                 placer.put("vault", vault, at);
-                if (light && (i + k) % 2 == 0) placer.put("lantern", light, at + Vec3(0, archRadius() + 0.08f, 0));
+                if (light && floor == 0 && (i + k) % 2 == 0) placer.put("lantern", light, at + Vec3(0, archRadius() + 0.08f, 0));
             }
+    }
+
+    /// The half pier in the outer wall from which the vaults spring.
+    static Mesh respond(float height, float width) {
+        Mesh mesh;
+        append(mesh, roundedBox({width, height, width * 0.8f}, 0.02f, 1), kStone, placed({0, height / 2, 0}));
+        append(mesh, roundedBox({width * 1.2f, 0.24f, width}, 0.015f, 1), kTrim, placed({0, 0.12f, 0}));
+        append(mesh, roundedBox({width * 1.24f, 0.13f, width * 1.1f}, 0.015f, 1), kTrim, placed({0, height - 0.065f, 0}));
+        return mesh;
     }
 
     void addOuterWalls(Placer& placer, int floor, float y, float whole) const {
@@ -175,10 +184,10 @@ private:
                 panel, [&](const Vec3& p) { return p + Vec3(0, bottom, 0); }, 35);
             append(panel, flatPatch({-bay_ / 2, 0, thick / 2}, {bay_, 0, 0}, {0, bottom, 0}), kStone);
             append(panel, flatPatch({bay_ / 2, 0, -thick / 2}, {-bay_, 0, 0}, {0, bottom, 0}), kStone);
-            append(panel, roundedBox({2 * r + 0.24f, 0.09f, thick + 0.16f}, 0.02f, 2), kTrim,
+            append(panel, roundedBox({2 * r + 0.24f, 0.09f, thick + 0.16f}, 0.02f, 1), kTrim,
                    placed({0, bottom, 0.03f}));
         }
-        append(panel, hall::pier(columnHeightOn(floor), columnRadius_ * 2.2f), 0,
+        append(panel, respond(columnHeightOn(floor), columnRadius_ * 2.2f), 0,
                placed({-bay_ / 2, 0, thick * 0.42f}));
         Mesh closed = panel;
         if (floor == 0) {
@@ -230,7 +239,7 @@ private:
         for (int side = 0; side < 4; ++side) {
             const float length = 2 * ((side % 2 == 0 ? x : z) + bay_ + 0.4f),
                         reach = (side % 2 == 0 ? z : x) + bay_ + 0.2f;
-            append(mesh, roundedBox({length, 0.9f, 0.42f}, 0.02f, 2), kStone,
+            append(mesh, roundedBox({length, 0.9f, 0.42f}, 0.02f, 1), kStone,
                    placed({0, y + 0.4f, 0}, {0, 90.0f * static_cast<float>(side), 0}) * placed({0, 0, -reach}));
         }
         addPart(result, "roof", std::move(mesh));
@@ -251,10 +260,10 @@ private:
     /// One row of half-round tiles from the eaves (origin) up and back by `run` and `rise`.
     static Mesh tileRow(float run, float rise) {
         Mesh mesh;
-        const int tiles = 4;
+        const int tiles = 3;
         for (int i = 0; i < tiles; ++i) {
             const float t0 = static_cast<float>(i) / tiles, t1 = static_cast<float>(i + 1) / tiles + 0.03f;
-            Mesh tile = gridSurface(6, 1, [&](float u, float v) {
+            Mesh tile = gridSurface(4, 1, [&](float u, float v) {
                 const float t = glm::mix(t0, t1, v), r = 0.085f - 0.018f * v, a = kPi * u;
                 return Vec3(r * std::cos(a), rise * t + r * std::sin(a) * 0.8f + 0.02f * (1 - v), -run * t);
             });
@@ -263,8 +272,8 @@ private:
         return mesh;
     }
 
-    int baysX_ = 6, baysZ_ = 2, floors_ = 2, flutes_ = 0;
-    float bay_ = 3.4f, columnHeight_ = 3.1f, columnRadius_ = 0.235f;
+    int baysX_ = 5, baysZ_ = 2, floors_ = 2, flutes_ = 0;
+    float bay_ = 3.6f, columnHeight_ = 3.1f, columnRadius_ = 0.235f;
     bool lanterns_ = true;
 };
 

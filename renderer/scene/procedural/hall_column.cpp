@@ -19,12 +19,12 @@ Mesh acanthus(float height, float width, float radius, float flare) {
 Mesh spiral(float size, float thickness) {
     std::vector<Vec3> path;
     std::vector<float> radii;
-    for (int i = 0; i <= 18; ++i) {
-        const float t = static_cast<float>(i) / 18, a = t * 4.2f * kPi, r = size * (1 - 0.85f * t);
+    for (int i = 0; i <= 13; ++i) {
+        const float t = static_cast<float>(i) / 13, a = t * 4.2f * kPi, r = size * (1 - 0.85f * t);
         path.push_back({r * std::cos(a), r * std::sin(a), thickness * 1.5f * t});
         radii.push_back(thickness * (1 - 0.5f * t));
     }
-    return tube(path, radii, 5);
+    return tube(path, radii, 4);
 }
 
 Mesh capital(float radius, float height) {
@@ -48,16 +48,15 @@ Mesh capital(float radius, float height) {
         append(mesh, low, 0, placed({0, height * 0.08f, 0}, {0, turn, 0}));
         append(mesh, high, 0, placed({0, height * 0.08f, 0}, {0, turn + 22.5f, 0}));
     }
-    const Mesh volute = spiral(radius * 0.27f, radius * 0.075f);
+    const Mesh volute = spiral(radius * 0.27f, radius * 0.095f);
     for (int corner = 0; corner < 4; ++corner) {
         const Mat4 turn = placed({0, 0, 0}, {0, 45.0f + 90.0f * static_cast<float>(corner), 0});
         const Vec3 at(0, height * 0.72f, radius * 1.48f);
-        append(mesh, volute, 0, turn * placed(at + Vec3(0.015f, 0, 0), {0, 90, 0}));
-        append(mesh, volute, 0, turn * placed(at - Vec3(0.015f, 0, 0), {0, 90, 0}, {1, 1, -1}));
+        append(mesh, volute, 0, turn * placed(at, {0, 90, 0}));
     }
-    append(mesh, roundedBox({radius * 3.05f, height * 0.09f, radius * 3.05f}, 0.012f, 2), 0,
+    append(mesh, roundedBox({radius * 3.05f, height * 0.09f, radius * 3.05f}, 0.012f, 1), 0,
            placed({0, bell + height * 0.045f, 0}));
-    append(mesh, roundedBox({radius * 3.25f, height * 0.09f, radius * 3.25f}, 0.018f, 2), 0,
+    append(mesh, roundedBox({radius * 3.25f, height * 0.09f, radius * 3.25f}, 0.018f, 1), 0,
            placed({0, bell + height * 0.135f, 0}));
     return mesh;
 }
@@ -67,7 +66,7 @@ Mesh capital(float radius, float height) {
 Mesh column(float height, float radius, int flutes) {
     Mesh mesh;
     const float r = radius, plinth = 0.55f * r, base = 0.75f * r, cap = 2.2f * r;
-    append(mesh, roundedBox({r * 2.9f, plinth, r * 2.9f}, 0.012f, 2), kTrim, placed({0, plinth / 2, 0}));
+    append(mesh, roundedBox({r * 2.9f, plinth, r * 2.9f}, 0.012f, 1), kTrim, placed({0, plinth / 2, 0}));
     append(mesh,
            lathe(smoothProfile({{0, plinth},
                                 {r * 1.40f, plinth, true},
@@ -82,10 +81,10 @@ Mesh column(float height, float radius, int flutes) {
                                 {r, plinth + base, true},
                                 {0, plinth + base}},
                                2),
-                 28),
+                 20),
            kTrim);
     const float y0 = plinth + base, y1 = height - cap;
-    const int around = flutes > 0 ? flutes * 4 : 36;
+    const int around = flutes > 0 ? flutes * 4 : 28;
     append(mesh,
            gridSurface(
                around, 10,
@@ -104,19 +103,19 @@ Mesh column(float height, float radius, int flutes) {
 
 Mesh pier(float height, float width) {
     Mesh mesh;
-    append(mesh, roundedBox({width, height, width}, 0.02f, 2), kStone, placed({0, height / 2, 0}));
+    append(mesh, roundedBox({width, height, width}, 0.02f, 1), kStone, placed({0, height / 2, 0}));
     for (const auto& [y, h, grow] : {std::tuple<float, float, float>{0.0f, 0.22f, 0.10f},
                                      {0.22f, 0.05f, 0.06f},
                                      {height - 0.10f, 0.10f, 0.11f},
                                      {height - 0.16f, 0.06f, 0.07f},
                                      {height - 0.34f, 0.03f, 0.03f}})
-        append(mesh, roundedBox({width + grow, h, width + grow}, 0.012f, 2), kTrim, placed({0, y + h / 2, 0}));
+        append(mesh, roundedBox({width + grow, h, width + grow}, 0.012f, 1), kTrim, placed({0, y + h / 2, 0}));
     return mesh;
 }
 
 Mesh lantern(float drop, float size) {
     Mesh mesh;
-    append(mesh, tube({Vec3(0, 0, 0), Vec3(0, -drop, 0)}, {0.008f, 0.008f}, 8), kMetal);
+    append(mesh, tube({Vec3(0, 0, 0), Vec3(0, -drop, 0)}, {0.008f, 0.008f}, 5), kMetal);
     const float y = -drop, r = size * 0.5f, h = size * 1.5f;
     append(mesh,
            lathe(smoothProfile({{0, y - h * 0.32f},
@@ -137,7 +136,7 @@ Mesh lantern(float drop, float size) {
         const Vec3 d(std::cos(a), 0, std::sin(a));
         append(mesh,
                tube({d * (r * 0.76f) + Vec3(0, y - h * 0.98f, 0), d * (r * 1.05f) + Vec3(0, y - h * 0.31f, 0)},
-                    {0.01f, 0.01f}, 8),
+                    {0.01f, 0.01f}, 4),
                kMetal);
     }
     Profile flame;
@@ -145,7 +144,7 @@ Mesh lantern(float drop, float size) {
         const float a = kPi * static_cast<float>(k) / 10;
         flame.push_back({k % 10 == 0 ? 0 : 0.42f * r * std::sin(a), y - h * 0.66f - 0.55f * r * std::cos(a)});
     }
-    append(mesh, lathe(flame, 16), kFlame);
+    append(mesh, lathe(flame, 8), kFlame);
     return mesh;
 }
 

@@ -5,7 +5,7 @@
 namespace lumi::hall {
 namespace {
 
-constexpr int kArchSteps = 22;
+constexpr int kArchSteps = 18;
 
 /// Where the ray from the arch's centre at `angle` leaves the panel above the springing line.
 Vec2 panelBorder(float angle, float halfWidth, float above) {
@@ -86,11 +86,11 @@ Mesh edgeBand(float span, float rise, float band, float thick) {
     };
     append(mesh,
            gridSurface(
-               22, 1, [&](float u, float v) { return Vec3(at(u, thick), -band * (1 - v)); }, Vec2(span * 1.5f, band)));
+               16, 1, [&](float u, float v) { return Vec3(at(u, thick), -band * (1 - v)); }, Vec2(span * 1.5f, band)));
     turnInsideOut(mesh);
     append(mesh,
            gridSurface(
-               22, 1, [&](float u, float v) { return Vec3(at(u, thick * (1 - v)), -band); }, Vec2(span * 1.5f, thick)));
+               16, 1, [&](float u, float v) { return Vec3(at(u, thick * (1 - v)), -band); }, Vec2(span * 1.5f, thick)));
     return mesh;
 }
 
@@ -128,10 +128,10 @@ Mesh archPanel(float width, float height, float thickness, float spring, float r
 Mesh balustrade(float width, float height, float balusterPitch) {
     Mesh mesh;
     const float foot = 0.14f, rail = 0.11f, deep = 0.26f, tall = height - foot - rail;
-    append(mesh, roundedBox({width, foot, deep}, 0.012f, 2), kTrim, placed({0, foot / 2, 0}));
-    append(mesh, roundedBox({width, rail * 0.55f, deep * 1.16f}, 0.018f, 3), kTrim,
+    append(mesh, roundedBox({width, foot, deep}, 0.012f, 1), kTrim, placed({0, foot / 2, 0}));
+    append(mesh, roundedBox({width, rail * 0.55f, deep * 1.16f}, 0.018f, 2), kTrim,
            placed({0, height - rail * 0.275f, 0}));
-    append(mesh, roundedBox({width, rail * 0.5f, deep * 0.86f}, 0.008f, 2), kTrim,
+    append(mesh, roundedBox({width, rail * 0.5f, deep * 0.86f}, 0.008f, 1), kTrim,
            placed({0, height - rail * 0.78f, 0}));
     const float r = 0.078f;
     const Profile turned = smoothProfile({{0, 0},
@@ -150,8 +150,8 @@ Mesh balustrade(float width, float height, float balusterPitch) {
                                           {r * 0.95f, tall * 0.95f, true},
                                           {r * 0.95f, tall, true},
                                           {0, tall}},
-                                         2);
-    const Mesh baluster = lathe(turned, 16);
+                                         1);
+    const Mesh baluster = lathe(turned, 9);
     const int count = std::max(1, static_cast<int>(width / balusterPitch));
     for (int i = 0; i < count; ++i)
         append(mesh, baluster, kTrim,
@@ -169,7 +169,7 @@ Mesh groinVault(float width, float depth, float rise, float band) {
     };
     const auto spaced = [](float t) { return 0.5f - 0.5f * std::cos(kPi * t); };  // denser where the barrels are steep
     Mesh shell = gridSurface(
-        16, 16,
+        12, 12,
         [&](float u, float v) {
             const float x = (spaced(u) - 0.5f) * width, z = (spaced(v) - 0.5f) * depth;
             return Vec3(x, heightAt(x, z), z);
@@ -180,11 +180,11 @@ Mesh groinVault(float width, float depth, float rise, float band) {
     const float thick = 0.055f;
     for (const float sign : {-1.0f, 1.0f}) {
         std::vector<Vec3> path;
-        for (int i = 0; i <= 22; ++i) {
-            const float t = spaced(static_cast<float>(i) / 22) - 0.5f;
+        for (int i = 0; i <= 14; ++i) {
+            const float t = spaced(static_cast<float>(i) / 14) - 0.5f;
             path.push_back({t * width, heightAt(t * width, t * depth) - thick * 0.2f, sign * t * depth});
         }
-        append(mesh, tube(path, std::vector<float>(path.size(), thick), 6, false), kTrim);
+        append(mesh, tube(path, std::vector<float>(path.size(), thick), 5, false), kTrim);
     }
     for (int side = 0; side < 4; ++side) {
         const float span = side % 2 == 0 ? width : depth, across = side % 2 == 0 ? depth : width;
@@ -212,10 +212,10 @@ Mesh archDoor(float spring, float radius) {
         const float x = -radius + wide * (static_cast<float>(i) + 0.5f);
         const float inner = std::max(0.0f, std::abs(x) - wide * 0.3f);
         const float top = spring + std::sqrt(std::max(0.0f, radius * radius - inner * inner)) + 0.03f;
-        append(mesh, roundedBox({wide - 0.006f, top, 0.05f}, 0.008f, 2), kWood, placed({x, top / 2, 0}));
+        append(mesh, roundedBox({wide - 0.006f, top, 0.05f}, 0.008f, 1), kWood, placed({x, top / 2, 0}));
     }
     for (const float y : {0.35f, spring - 0.15f}) {
-        append(mesh, roundedBox({2 * radius, 0.09f, 0.012f}, 0.004f, 2), kMetal, placed({0, y, 0.03f}));
+        append(mesh, roundedBox({2 * radius, 0.09f, 0.012f}, 0.004f, 1), kMetal, placed({0, y, 0.03f}));
         for (int i = 0; i < planks; ++i)
             append(mesh, lathe({{0.016f, 0}, {0.013f, 0.007f}, {0, 0.011f}}, 8), kMetal,
                    placed({-radius + wide * (static_cast<float>(i) + 0.5f), y, 0.036f}, {90, 0, 0}));

@@ -9,7 +9,7 @@ constexpr uint32_t kLeaf = 0, kStem = 1, kPot = 2, kSoil = 3;
 /// with a gentle wave at the margin.
 Mesh leaf(float length, float width, float arch, float wave, int seed) {
     return gridSurface(
-        10, 16,
+        6, 12,
         [&](float u, float v) {
             const float across = 2 * u - 1;
             // Widest at a third of its length, pointed at the tip.
@@ -98,11 +98,11 @@ private:
         const Vec3 root = outward * (potRadius_ * 0.35f * age) + Vec3(0, soil - 0.01f, 0);
         const Vec3 top = root + outward * (tall * lean * 0.75f) + Vec3(0, tall, 0);
         const Vec3 middle = glm::mix(root, top, 0.5f) - outward * (tall * lean * 0.16f);
-        const std::vector<Vec3> path = curveThrough({root, middle, top}, 9);
+        const std::vector<Vec3> path = curveThrough({root, middle, top}, 7);
         const float thick = 0.0035f + 0.006f * height_;
         std::vector<float> radii;
-        for (int k = 0; k < 9; ++k) radii.push_back(thick * (1 - 0.06f * static_cast<float>(k)));
-        append(mesh, tube(path, radii, 7), kStem);
+        for (int k = 0; k < 7; ++k) radii.push_back(thick * (1 - 0.08f * static_cast<float>(k)));
+        append(mesh, tube(path, radii, 5, false), kStem);
 
         const float size = dice.range(0.75f, 1.1f) * glm::mix(0.8f, 1.0f, age);
         const float pitch = glm::mix(-58.0f, -6.0f, std::pow(age, 0.7f)) + dice.range(-8, 8);

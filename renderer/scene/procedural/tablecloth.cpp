@@ -22,7 +22,7 @@ public:
     ProceduralResult build() const override {
         const float whole = depth_ + drop_;
         Mesh mesh = gridSurface(
-            220, 180, [&](float u, float v) { return clothPoint(u, v * whole); }, Vec2(width_, whole));
+            170, 140, [&](float u, float v) { return clothPoint(u, v * whole); }, Vec2(width_, whole));
         return onePart(std::move(mesh), {opaqueSlot("surface", {0.55f, 0.52f, 0.47f}, 0.9f)});
     }
 

@@ -42,7 +42,8 @@ float tiledFractal(float x, float y, int periodX, int periodY, int octaves, uint
 
 /// A random number in [0, 1) for an integer place.
 inline float randomAt(int x, int y, uint32_t seed) {
-    return unitFloat(hashCombine(static_cast<uint32_t>(x), static_cast<uint32_t>(y), seed));
+    const uint32_t place = static_cast<uint32_t>(x) * 0x9e3779b1u ^ pcgHash(static_cast<uint32_t>(y) + seed * 0x85ebca77u);
+    return unitFloat(pcgHash(place));
 }
 
 inline float fract(float x) {

@@ -91,7 +91,7 @@ public:
         all.push_back({rim - wall_ * 0.5f, height_ + wall_ * 0.35f, false});
         all.insert(all.end(), inner.begin(), inner.end());
         all[1].sharp = true;
-        Mesh mesh = lathe(smoothProfile(all, 6), segments_);
+        Mesh mesh = lathe(smoothProfile(all, 4), segments_);
         if (flutes_ > 0) {
             deform(
                 mesh,
@@ -115,7 +115,7 @@ private:
 
     VesselKind kind_ = VesselKind::Vase;
     float height_ = 0.3f, wall_ = 0.004f, girth_ = 1;
-    int flutes_ = 0, segments_ = 96;
+    int flutes_ = 0, segments_ = 72;
 };
 
 }  // namespace
