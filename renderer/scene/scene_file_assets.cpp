@@ -4,8 +4,10 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "base/parallel.h"
 #include "scene/gltf/load_gltf.h"
+#include "scene/obj/cage.h"
 #include "scene/obj/load_obj.h"
 #include "scene/procedural/procedural.h"
 #include "scene/scene_file_parts.h"
@@ -21,6 +23,7 @@ struct AssetSource {
     std::string file;
     int sceneIndex = -1;
     std::string variant;
+    Subdivision subdivision;
     std::unique_ptr<Procedural> generator;
 };
 
@@ -49,6 +52,7 @@ AssetSource readAsset(SceneFileContext& context, const JsonMember& member) {
     }
     if (source.kind == "gltf" || source.kind == "obj") {
         source.file = readText(context.tree, *source.kindValue, source.kind);
+        if (source.kind == "obj") reader.parameters([&](ParameterVisitor& v) { source.subdivision.describe(v); });
         if (source.kind == "gltf") {
             source.sceneIndex = reader.integer("scene", 0, 1 << 20).value_or(-1);
             source.variant = reader.text("variant").value_or("");
@@ -63,6 +67,18 @@ AssetSource readAsset(SceneFileContext& context, const JsonMember& member) {
     return source;
 }
 
+/// The limit surface of an OBJ cage as a scene of one instance with one slot.
+Scene loadSubdivided(const std::filesystem::path& path, const Subdivision& subdivision) {
+    const std::vector<uint8_t> bytes = readFile(path);
+    SubdivisionCage cage = loadCage(path);
+    cage.faceMaterials.clear();
+    cage.material = 0;
+    SubdivisionSurface surface = tessellate(cage, subdivision.rate, path.string());
+    Scene scene = sceneFromProcedural(singleMesh(std::move(surface.mesh)));
+    scene.contentDigest = digest(bytes);
+    return scene;
+}
+
 Scene loadAssetFile(const SceneFileContext& context, const AssetSource& source, float begin, float end) {
     LoadOptions options = context.options;
     options.sceneIndex = source.sceneIndex;
@@ -73,6 +89,7 @@ Scene loadAssetFile(const SceneFileContext& context, const AssetSource& source, 
         };
     const std::filesystem::path path = context.resolve(source.file);
     try {
+        if (source.subdivision.scheme != SubdivisionScheme::None) return loadSubdivided(path, source.subdivision);
         return source.kind == "gltf" ? loadGltf(path, context.log, options) : loadObj(path, context.log, options);
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::Interrupted) throw;
@@ -115,6 +132,16 @@ void buildGenerated(SceneFileContext& context, const std::vector<AssetSource*>& 
 }
 
 }  // namespace
+
+void Subdivision::describe(ParameterVisitor& v) {
+    v.choice("subdivision", scheme, {.label = "Subdivision", .options = {"none", "catmull-clark"},
+                                     .help = "Whether the OBJ is a control cage of a smooth surface.",
+                                     .redo = Redo::Build});
+    v.when(scheme != SubdivisionScheme::None, [&] {
+        v.integer("rate", rate, {.label = "Rate", .min = 1, .max = 64, .scale = Scale::Log,
+                                 .help = "Segments along every edge of the cage.", .redo = Redo::Build});
+    });
+}
 
 void readAssets(SceneFileContext& context, const JsonValue* section, const JsonValue* instances) {
     std::vector<AssetSource> sources;

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <memory>
-#include <mutex>
+#include <tuple>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -53,6 +51,7 @@ struct TextureRequest {
     const JsonValue* value;           ///< for messages
     std::string file;                 ///< as written, or empty
     std::unique_ptr<ProceduralTexture> generator;
+    std::string generated;            ///< the generator's name and all its parameters
     bool srgb;
     int material;                     ///< index into scene.materials
     const TextureKey* key;
@@ -73,7 +72,7 @@ Texture placedTexture(const TexturePlacement& placement) {
 
 /// `"wood.png"`, or `{"file": "wood.png", "scale": [2, 2]}`, or `{"checker": {"squares": 8}, "scale": [2, 2]}`.
 TextureRequest readTexture(SceneFileContext& context, const JsonValue& value, const TextureKey& key, int material) {
-    TextureRequest request{&value, {}, nullptr, key.srgb, material, &key, {}};
+    TextureRequest request{&value, {}, nullptr, {}, key.srgb, material, &key, {}};
     if (value.isString()) {
         request.file = readText(context.tree, value, key.key);
         return request;
@@ -89,8 +88,12 @@ TextureRequest readTexture(SceneFileContext& context, const JsonValue& value, co
             reader.fail(value.at, fmt::format("\"{}\" names two images", key.key), "one of \"file\" or a generator");
         request.generator = entry.make();
         ObjectReader parameters(context.tree, *settings, entry.name);
-        parameters.parameters([&](ParameterVisitor& v) { request.generator->describe(v); });
+        const auto describe = [&](ParameterVisitor& v) { request.generator->describe(v); };
+        parameters.parameters(describe);
         parameters.finish();
+        request.generated = entry.name;
+        for (const ParameterInfo& info : listParameters(describe))
+            request.generated += '\n' + formatParameter(info.value);
     }
     if (const JsonValue* scale = reader.find("scale"); scale && scale->isNumber())
         placement.scale = Vec2(static_cast<float>(readNumber(context.tree, *scale, "scale", -1e4, 1e4)));
@@ -115,17 +118,13 @@ ImagePtr decodeFile(const std::vector<uint8_t>& bytes, const std::string& name, 
     return image;
 }
 
-/// Distinct images of all requests: the same file used as colour and as data is decoded for each use.
+/// Loads or generates each distinct image once; a file used both as colour and as data counts twice.
 void loadTextures(SceneFileContext& context, std::vector<TextureRequest>& requests) {
-    std::map<std::pair<std::string, bool>, size_t> byFile;
+    std::map<std::tuple<std::string, std::string, bool>, size_t> known;
     std::vector<const TextureRequest*> distinct;
     for (TextureRequest& request : requests) {
-        if (request.generator) {
-            request.image = distinct.size();
-            distinct.push_back(&request);
-            continue;
-        }
-        const auto [place, isNew] = byFile.emplace(std::pair(request.file, request.srgb), distinct.size());
+        const bool srgb = request.generator ? false : request.srgb;
+        const auto [place, isNew] = known.emplace(std::tuple(request.file, request.generated, srgb), distinct.size());
         request.image = place->second;
         if (isNew) distinct.push_back(&request);
     }

@@ -103,7 +103,10 @@ Json assetSchema() {
                             {"scene", {{"type", "integer"}, {"minimum", 0}, {"description", "Which of its scenes."}}},
                             {"variant", text("Which of its material variants.")}},
                            "A glTF 2.0 asset."));
-    kinds.push_back(closed({{"obj", text("An .obj file, relative to this file.")}}, "A Wavefront OBJ asset."));
+    Subdivision subdivision;
+    Json obj = {{"obj", text("An .obj file, relative to this file.")}};
+    obj.update(properties([&](ParameterVisitor& v) { subdivision.describe(v); }));
+    kinds.push_back(closed(std::move(obj), "A Wavefront OBJ asset, or the cage of a subdivision surface."));
     for (Json& kind : kinds) kind["required"] = {kind["properties"].begin().key()};
     for (const ProceduralEntry& entry : proceduralCatalog()) {
         const auto generator = entry.make();

@@ -55,7 +55,7 @@ size_t openEdges(const Mesh& mesh) {
 /// Attributes complete, normals unit and on the front's side, no triangle without area.
 void expectWellFormed(const Mesh& mesh, const std::string& name) {
     SCOPED_TRACE(name);
-    checkMesh(mesh, name);
+    EXPECT_NO_THROW(checkMesh(mesh, name));
     ASSERT_FALSE(mesh.triangles.empty());
     ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
     ASSERT_EQ(mesh.uv[0].size(), mesh.positions.size());

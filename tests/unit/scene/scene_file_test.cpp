@@ -203,6 +203,89 @@ TEST(SceneFile, TexturesFromGenerators) {
     EXPECT_EQ(texture.image->levels[0].bytes[0], 255);
 }
 
+TEST(SceneFile, EqualGeneratedTexturesAreMadeOnce) {
+    const Scene scene = parseScene(R"({"version": 1, "materials": {
+      "a": {"base-color-texture": {"checker": {"squares": 2}, "scale": 2}}, "b": {"base-color-texture": {"checker": {"squares": 2}}},
+      "c": {"base-color-texture": {"checker": {"squares": 3}}}}})");
+    const auto image = [&](size_t i) { return scene.materials[i].baseColorTexture.image; };
+    EXPECT_EQ(image(0), image(1));
+    EXPECT_NE(image(0), image(2));
+    EXPECT_EQ(scene.materials[0].baseColorTexture.scale, Vec2(2));
+    EXPECT_EQ(scene.materials[1].baseColorTexture.scale, Vec2(1));
+}
+
+constexpr const char* kCube = R"(v -1 -1 -1
+v 1 -1 -1
+v 1 1 -1
+v -1 1 -1
+v -1 -1 1
+v 1 -1 1
+v 1 1 1
+v -1 1 1
+f 1 4 3 2
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+)";
+
+TEST(SceneFile, ObjAssetsAndSubdivisionCages) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "cube.obj", std::string_view(kCube));
+    const Scene scene = parseScene(R"({"version": 1,
+      "assets": {"cube": {"obj": "cube.obj"}, "round": {"obj": "cube.obj", "subdivision": "catmull-clark", "rate": 4}},
+      "materials": {"red": {}}, "instances": [{"asset": "cube", "material": "red"}, {"asset": "round"}]})", folder.path());
+    ASSERT_EQ(scene.instances.size(), 2u);
+    EXPECT_EQ(scene.instances[0].mesh->triangles.size(), 12u);
+    const Mesh& round = *scene.instances[1].mesh;
+    EXPECT_EQ(round.triangles.size(), 6u * 4 * 4 * 2);
+    for (const Vec3& p : round.positions) EXPECT_LT(glm::length(p), 1) << "the limit surface lies inside its cage";
+    EXPECT_EQ(refusal(R"({"version": 1, "assets": {"a": {"obj": "cube.obj", "rate": 65}}})", folder.path()),
+              "s.json:1:60: \"rate\" is 65; expected 1 to 64");
+}
+
+/// One triangle below a node that stands at x = 2 and moves to x = 4 in a second; a lamp and a camera on it.
+constexpr const char* kGltf = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+"extensionsUsed": ["KHR_lights_punctual"],
+"extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "name": "bulb", "intensity": 3}]}},
+"nodes": [{"name": "arm", "translation": [2, 0, 0], "mesh": 0, "children": [1, 2]},
+          {"name": "lamp", "extensions": {"KHR_lights_punctual": {"light": 0}}}, {"name": "eye", "camera": 0}],
+"cameras": [{"name": "shot", "type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}],
+"materials": [{"name": "paint"}],
+"meshes": [{"name": "tri", "primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+"animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+                "samplers": [{"input": 1, "output": 2}]}],
+"buffers": [{"byteLength": 68, "uri":
+"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAABAAAAAAAAAAAAAAIBAAAAAAAAAAAA="}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8},
+                {"buffer": 0, "byteOffset": 44, "byteLength": 24}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0,0,0], "max": [1,1,0]},
+              {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
+              {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}]})";
+
+TEST(SceneFile, GltfAssetsBringAllTheyHold) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "a.gltf", std::string_view(kGltf));
+    const Scene scene = parseScene(R"({"version": 1, "assets": {"a": {"gltf": "a.gltf"}}, "materials": {"red": {}},
+      "cameras": {"own": {}},
+      "instances": [{"name": "one", "asset": "a", "translate": [0, 10, 0]},
+                    {"name": "two", "asset": "a", "translate": [0, 20, 0], "materials": {"paint": "red"}}]})", folder.path());
+    ASSERT_EQ(scene.instances.size(), 2u);
+    EXPECT_EQ(scene.instances[0].mesh, scene.instances[1].mesh);
+    expectNear(originOf(scene, scene.instances[0].node, 0), {2, 10, 0});
+    expectNear(originOf(scene, scene.instances[1].node, 0.5f), {3, 20, 0});
+    EXPECT_EQ(scene.instances[1].name.substr(0, 4), "two/");
+    EXPECT_EQ(scene.materials[scene.instances[0].mesh->material].name, "a/paint");
+    EXPECT_EQ(scene.materials[static_cast<size_t>(scene.instances[1].material)].name, "red");
+    ASSERT_EQ(scene.lights.size(), 2u);
+    EXPECT_EQ(scene.lights[1].name.substr(0, 4), "two/");
+    expectNear(originOf(scene, scene.lights[1].node, 0), {2, 20, 0});
+    ASSERT_EQ(scene.cameras.size(), 3u);
+    EXPECT_EQ(scene.cameras[0].camera.name, "own");
+    expectNear(cameraAt(scene, 2, 0).eye, {2, 20, 0});
+}
+
 TEST(SceneFile, UnusedAssetsWarnAndAreNotBuilt) {
     MessageLog log;
     parseSceneFile(R"({"version": 1, "assets": {"big": {"hairball": {"strands": 200000}}}})", "s.json", {}, log);
