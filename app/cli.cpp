@@ -112,7 +112,7 @@ void addMachine(CLI::App& app, MachineOptions& machine, bool computes) {
     if (!computes) return;
     app.add_option("--threads", machine.threads, "Threads to use (one for each core); never changes the image")
         ->type_name("N")
-        ->check(CLI::Range(1, 1024));
+        ->check(CLI::Range(1, 1024).description(""));
     app.add_option("--isa", machine.isa, "Instruction set to use: baseline, v3 or v4 (the best)")->type_name("NAME");
     app.add_option("--memory-limit", machine.memoryLimit, "Refuse to use more, as 8G or 50% (75%)")->type_name("SIZE");
 }
@@ -121,24 +121,24 @@ void addMachine(CLI::App& app, MachineOptions& machine, bool computes) {
 void finishShared(const SharedText& text, SceneOptions& scene) {
     auto& values = scene.values;
     for (size_t i = 0; i < scene.modules.size() && i < 2; ++i)
-        values.emplace_back(fmt::format("view.{}.module", i), scene.modules[i]);
+        values.push_back({fmt::format("view.{}.module", i), scene.modules[i], "--module"});
     if (!text.size.empty()) {
         const Extent2 size = parseSize(text.size, "--size");
-        values.emplace_back("render.width", std::to_string(size.width));
-        values.emplace_back("render.height", std::to_string(size.height));
+        values.push_back({"render.width", std::to_string(size.width), "--size"});
+        values.push_back({"render.height", std::to_string(size.height), "--size"});
     }
-    const std::pair<const char*, const std::string*> named[] = {{"render.spp", &text.spp},
-                                                                {"render.fps", &text.fps},
-                                                                {"render.seed", &text.seed},
-                                                                {"camera.select", &text.camera},
-                                                                {"view.0.exposure", &text.exposure}};
-    for (const auto& [id, value] : named)
-        if (!value->empty()) values.emplace_back(id, *value);
+    const TypedValue named[] = {{"render.spp", text.spp, "--spp"},
+                                {"render.fps", text.fps, "--fps"},
+                                {"render.seed", text.seed, "--seed"},
+                                {"camera.select", text.camera, "--camera"},
+                                {"view.0.exposure", text.exposure, "--exposure"}};
+    for (const TypedValue& value : named)
+        if (!value.text.empty()) values.push_back(value);
     for (const std::string& entry : text.set) {
         const size_t equals = entry.find('=');
         if (equals == std::string::npos || equals == 0)
             throwUsage({"not understood", "--set", "ID=VALUE", '"' + entry + '"'});
-        values.emplace_back(entry.substr(0, equals), entry.substr(equals + 1));
+        values.push_back({entry.substr(0, equals), entry.substr(equals + 1), "--set"});
     }
 }
 
@@ -182,7 +182,7 @@ public:
             return printed(std::string(kVersionText) + "\n");
         } catch (const CLI::CallForHelp&) {
             const auto used = app_.get_subcommands();
-            return printed(used.empty() ? app_.help() : used.front()->help());
+            return printed(used.empty() ? app_.help() : used.front()->help("lumiscope"));
         } catch (const CLI::ParseError& error) {
             throwParseError(app_, error);
         }
@@ -228,7 +228,7 @@ private:
         app->add_flag("--half", render.half, "Store colours of .exr files as half");
         app->add_option("--progress", progress_, "auto (if standard error is a terminal), always or never")
             ->type_name("WHEN")
-            ->check(CLI::IsMember({"auto", "always", "never"}));
+            ->check(CLI::IsMember({"auto", "always", "never"}).description(""));
         addMachine(*app, line_.machine, true);
         app->footer(renderFooter);
     }
@@ -249,7 +249,7 @@ private:
         app->add_option("what", line_.list.what, "scenes, modules, buffers or parameters")
             ->required()
             ->type_name("WHAT")
-            ->check(CLI::IsMember({"scenes", "modules", "buffers", "parameters"}));
+            ->check(CLI::IsMember({"scenes", "modules", "buffers", "parameters"}).description(""));
         app->add_option("--module", line_.list.module, "Only what belongs to this module")->type_name("INSTANCE");
         addMachine(*app, line_.machine, false);
         app->footer("Examples:\n  lumiscope list parameters --module accumulate\n  lumiscope list buffers --json");
@@ -264,7 +264,7 @@ private:
         app->add_option("--window", windowSize_, "Size of the window's content (1280x800)")->type_name("WxH");
         app->add_option("--samples", line_.view.samples, "Without a script: samples a pixel before the shot (16)")
             ->type_name("N")
-            ->check(CLI::Range(1, 1 << 20));
+            ->check(CLI::Range(1, 1 << 20).description(""));
         addShared(*app, viewText_, viewScene_);
         addMachine(*app, line_.machine, true);
         app->footer("Example:\n  lumiscope view cornell --offscreen --out shots --module accumulate --module none");

@@ -18,12 +18,18 @@ struct MachineOptions {
     bool json = false, quiet = false;
 };
 
+/// One document value as typed.
+struct TypedValue {
+    std::string id, text;
+    std::string option;  ///< where it was given, for messages: "--set", "--size"
+};
+
 /// What is rendered and how, as document values in the order in which they apply.
 struct SceneOptions {
     std::string scene;                 ///< name or path as typed; may be empty
     std::vector<std::string> modules;  ///< instances
     /// Parameter id and text: the options that are parameters, then those of --set.
-    std::vector<std::pair<std::string, std::string>> values;
+    std::vector<TypedValue> values;
 };
 
 /// Half-open.

@@ -17,13 +17,13 @@ std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const 
                                        std::stop_token stop) {
     LoadOptions load;
     load.stop = stop;
-    for (const auto& [id, text] : options.values) {
+    for (const auto& [id, text, option] : options.values) {
         if (id == "scene.variant") load.variant = text;
         if (id != "scene.index") continue;
         try {
             load.sceneIndex = std::stoi(text);
         } catch (const std::exception&) {
-            throwUsage({"\"scene.index\" has the wrong type", "--set", "a whole number", '"' + text + '"'});
+            throwUsage({"\"scene.index\" has the wrong type", option, "a whole number", '"' + text + '"'});
         }
     }
     return loadScene(file, log, load);
@@ -31,7 +31,7 @@ std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const 
 
 Document makeDocument(std::shared_ptr<const Scene> scene, const SceneOptions& options) {
     Document document(std::move(scene));
-    for (const auto& [id, text] : options.values) document.setText(id, text, "--set");
+    for (const auto& [id, text, option] : options.values) document.setText(id, text, option);
     return document;
 }
 

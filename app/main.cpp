@@ -50,7 +50,7 @@ void printMessages(MessageLog& log, const MachineOptions& machine) {
 StartOptions startOptions(const SceneOptions& options) {
     StartOptions start;
     start.scene = findScene(options.scene.empty() ? "atrium" : options.scene);
-    for (const auto& [id, text] : options.values) {
+    for (const auto& [id, text, option] : options.values) {
         if (id == "scene.variant") start.variant = text;
         else if (id == "scene.index") start.sceneIndex = std::atoi(text.c_str());
         else start.set.emplace_back(id, text);

@@ -108,10 +108,9 @@ Document::Document(std::shared_ptr<const Scene> scene) : loaded_(scene), edited_
     render_.width = defaults.size.width;
     render_.height = defaults.size.height;
     render_.fps = defaults.fps;
-    for (ViewSettings& view : views_) {
-        view.module = defaults.module;
-        view.display.exposureEv = defaults.exposureEv;
-    }
+    for (ViewSettings& view : views_) view.display.exposureEv = defaults.exposureEv;
+    views_[0].module = defaults.module;
+    views_[1].module = defaults.module == "none" ? "accumulate" : "none";  // what the first view made of the same samples
     try {
         findModule(defaults.module, loaded_->path + ": render.module");
         for (const auto& [id, text] : defaults.set) setText(id, text, loaded_->path + ": render.set");

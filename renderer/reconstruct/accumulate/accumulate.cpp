@@ -98,7 +98,7 @@ RunResult AccumulateModule::run(const FrameContext& context, Image& out) {
 
     out.reset(extent_, 3);
     const double samples = static_cast<double>(convergence().samples);
-    if (last_.reset) BlockSum().scaledTotal(last_.sum, 1 / samples, out);
+    if (last_.reset) ImageBlockSum().scaledTotal(last_.sum, 1 / samples, out);
     else if (last_.counted) blocks_.scaledTotal(last_.sum, 1 / samples, out);
     else blocks_.scaledTotal(ImageOf<double>(extent_, 3), 1 / samples, out);
     writeTaps(context.wantedTaps);

@@ -1,5 +1,5 @@
 #pragma once
-#include "reconstruct/accumulate/block_sum.h"
+#include "reconstruct/accumulate/image_block_sum.h"
 #include "reconstruct/module.h"
 
 namespace lumi {
@@ -7,7 +7,7 @@ namespace lumi {
 /// The progressive mean of all samples since the last reset: the reference that every method is measured against.
 ///
 /// The mean of N samples has the same bits whether they came as one frame of N samples a pixel, as N frames of one, or
-/// as any aligned split in between: sums are in double over aligned power-of-two blocks (block_sum.h).
+/// as any aligned split in between: sums are in double over aligned power-of-two blocks (image_block_sum.h, math/block_sum.h).
 /// NaN and infinity stay in their pixel.
 class AccumulateModule : public Module {
 public:
@@ -48,7 +48,7 @@ private:
     void writeStandardError();
 
     Extent2 extent_;
-    BlockSum blocks_;
+    ImageBlockSum blocks_;
     Moments history_;  ///< of all committed steps
     Step last_;
     std::vector<Tap> taps_;

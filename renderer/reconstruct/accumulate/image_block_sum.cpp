@@ -1,4 +1,4 @@
-#include "reconstruct/accumulate/block_sum.h"
+#include "reconstruct/accumulate/image_block_sum.h"
 
 #include <algorithm>
 #include <bit>
@@ -27,7 +27,7 @@ bool pairUp(uint64_t first, uint64_t count, uint64_t nextFirst, uint64_t nextCou
 
 }  // namespace
 
-void BlockSum::add(uint64_t first, uint64_t count, ImageOf<double> sum) {
+void ImageBlockSum::add(uint64_t first, uint64_t count, ImageOf<double> sum) {
     while (!blocks_.empty() && pairUp(blocks_.back().first, blocks_.back().count, first, count)) {
         Block& left = blocks_.back();
         addTo(left.sum, sum);
@@ -39,7 +39,7 @@ void BlockSum::add(uint64_t first, uint64_t count, ImageOf<double> sum) {
     blocks_.push_back({first, count, std::move(sum)});
 }
 
-void BlockSum::scaledTotal(const ImageOf<double>& last, double scale, Image& out) const {
+void ImageBlockSum::scaledTotal(const ImageOf<double>& last, double scale, Image& out) const {
     // add() joins neighbours from the newest to the oldest, and what is left is summed from small to large: both walk
     // the blocks from the back with one running sum. A row of values at a time stays in the first-level cache.
     parallelRanges(static_cast<int64_t>(last.size()), 1 << 14, [&](int64_t begin, int64_t end) {
@@ -57,7 +57,7 @@ void BlockSum::scaledTotal(const ImageOf<double>& last, double scale, Image& out
     });
 }
 
-size_t BlockSum::bytes() const {
+size_t ImageBlockSum::bytes() const {
     size_t sum = 0;
     for (const Block& block : blocks_) sum += block.sum.bytes();
     return sum;

@@ -5,12 +5,12 @@
 
 namespace lumi {
 
-/// Sums of a growing sequence of equal steps, kept as a binary counter: two neighbouring sums that together make an
-/// aligned power-of-two block become one. The total is the sum over the aligned binary tree, so it does not depend on
-/// how the sequence was cut into aligned steps.
+/// math/block_sum.h for images: sums of a growing sequence of steps, kept as a binary counter. Two neighbouring sums
+/// that together make an aligned power-of-two block become one; the total is the sum over the aligned binary tree, so
+/// it does not depend on how the sequence was cut into aligned steps.
 ///
 /// Cost: one image for each set bit of the number of steps, plus those that an unaligned start leaves.
-class BlockSum {
+class ImageBlockSum {
 public:
     void clear() { blocks_.clear(); }
     /// Adds the sum of steps [first, first + count); `first` is where the sequence has come to (or anything, if empty).

@@ -1,0 +1,161 @@
+// Nothing is declared in vain: every parameter moves the image or a tap, every signal that reads() names does too.
+#include "math/hash.h"
+#include "support/module_harness.h"
+
+namespace lumi::test {
+namespace {
+
+constexpr Extent2 kExtent{32, 24};
+
+Describe describeOf(Module& module) {
+    return [&module](ParameterVisitor& v) { module.describe(v); };
+}
+
+std::vector<ParameterValue> choicesOf(const ParameterInfo& info) {
+    std::vector<ParameterValue> values;
+    switch (info.type) {
+        case ParameterType::Toggle: return {true, false};
+        case ParameterType::Choice: values.assign(info.options.begin(), info.options.end()); return values;
+        case ParameterType::Number:
+            for (const double t : {0.0, 0.25, 0.5, 1.0}) values.emplace_back(static_cast<float>(info.min + t * (info.max - info.min)));
+            return values;
+        case ParameterType::Integer:
+            for (const double t : {0.0, 0.001, 0.5, 1.0}) values.emplace_back(static_cast<int>(info.min + t * (info.max - info.min)));
+            return values;
+        case ParameterType::Colour: return {Vec3(0), Vec3(static_cast<float>(info.max))};
+        case ParameterType::Vector: return {Vec3(1), Vec3(0, 2, 0)};
+        case ParameterType::Text: return {};
+    }
+    return values;
+}
+
+bool isActive(Module& module, const std::string& id) {
+    for (const ParameterInfo& info : listParameters(describeOf(module)))
+        if (info.id == id) return info.active;
+    return false;
+}
+
+/// Meets the conditions under which `id` matters, trying switches and choices one after the other.
+void activate(Module& module, const std::string& id) {
+    for (int depth = 0; depth < 3 && !isActive(module, id); ++depth)
+        for (const ParameterInfo& info : listParameters(describeOf(module))) {
+            if (info.type != ParameterType::Toggle && info.type != ParameterType::Choice) continue;
+            for (const ParameterValue& value : choicesOf(info)) {
+                setParameter(describeOf(module), info.id, value);
+                if (isActive(module, id)) return;
+            }
+            setParameter(describeOf(module), info.id, info.value);
+        }
+}
+
+/// Frames with a still camera, a moved one, a still one again, and 2 samples a pixel so that variances are there.
+class Sensitivity : public testing::TestWithParam<const ModuleEntry*> {
+protected:
+    static void SetUpTestSuite() {
+        harness_ = std::make_unique<ModuleHarness>(kExtent, 2);
+        for (FrameNumber frame = 0; frame < kFrames; ++frame)
+            frames_.push_back(std::make_shared<Signals>(harness_->trace(frame, shift(frame))));
+    }
+    static void TearDownTestSuite() {
+        harness_.reset();
+        frames_.clear();
+    }
+
+    static float shift(FrameNumber frame) { return frame >= 3 ? 0.05f : 0.0f; }
+
+    /// Everything that the module shows over the frames; `disturbed` replaces the signals of the last but one.
+    static std::string play(Module& module, const Signals* disturbed = nullptr) {
+        module.resize(kExtent);
+        module.forget();
+        std::string digests;
+        for (FrameNumber frame = 0; frame < kFrames; ++frame) {
+            Image out;
+            const Changes changes{.cut = frame == 0, .camera = frame == 3};
+            const bool replaced = disturbed && frame == kFrames - 2;
+            EXPECT_EQ(harness_->run(module, {frame, changes, shift(frame), false},
+                                    replaced ? *disturbed : *frames_[static_cast<size_t>(frame)], out),
+                      RunResult::Completed);
+            digests += digestOf(out, module) + '\n';
+        }
+        return digests;
+    }
+
+    static constexpr FrameNumber kFrames = 6;
+    static std::unique_ptr<ModuleHarness> harness_;
+    static std::vector<std::shared_ptr<Signals>> frames_;
+};
+std::unique_ptr<ModuleHarness> Sensitivity::harness_;
+std::vector<std::shared_ptr<Signals>> Sensitivity::frames_;
+
+TEST_P(Sensitivity, EveryParameterMovesTheImage) {
+    const auto sample = GetParam()->make();
+    for (const ParameterInfo& info : listParameters(describeOf(*sample))) {
+        if (info.redo == Redo::Display) continue;
+        std::set<std::string> seen;
+        for (const ParameterValue& value : choicesOf(info)) {
+            const auto module = GetParam()->make();
+            activate(*module, info.id);
+            ASSERT_TRUE(isActive(*module, info.id)) << info.id << ": its condition cannot be met";
+            setParameter(describeOf(*module), info.id, value);
+            seen.insert(play(*module));
+        }
+        EXPECT_GT(seen.size(), 1u) << info.id << " changes nothing";
+    }
+}
+
+void disturb(Signals& signals, Signal signal) {
+    const auto noise = [](size_t i) { return unitFloat(hashCombine(static_cast<uint32_t>(i), 77)); };
+    if (signalInfo(signal).isId) {
+        IdImage& ids = signals.ids(signal);
+        for (size_t i = 0; i < ids.size(); ++i) ids.data()[i] = 1 + pcgHash(static_cast<uint32_t>(i)) % 7;
+        return;
+    }
+    Image& image = signals[signal];
+    for (size_t i = 0; i < image.size(); ++i) image.data()[i] = 1.5f * image.data()[i] + noise(i);
+    if (signal == Signal::Noisy)
+        for (size_t i = 0; i < signals.noisySum().size(); ++i) signals.noisySum().data()[i] += noise(i);
+}
+
+TEST_P(Sensitivity, EverySignalThatIsReadIsUsed) {
+    // With the defaults, and with each option of each choice, since reads() may depend on them.
+    std::vector<std::pair<std::string, ParameterValue>> settings{{"", false}};
+    const auto sample = GetParam()->make();
+    for (const ParameterInfo& info : listParameters(describeOf(*sample)))
+        if (info.type == ParameterType::Choice)
+            for (const ParameterValue& value : choicesOf(info)) settings.emplace_back(info.id, value);
+    for (const auto& [id, value] : settings) {
+        const auto module = GetParam()->make();
+        if (!id.empty()) setParameter(describeOf(*module), id, value);
+        const std::string before = play(*module);
+        for (int i = 0; i < kSignalCount; ++i) {
+            const Signal signal = static_cast<Signal>(i);
+            if (!module->reads().has(signal)) continue;
+            Signals disturbed = *frames_[kFrames - 2];
+            disturb(disturbed, signal);
+            EXPECT_NE(play(*module, &disturbed), before) << signalInfo(signal).name << " is read in vain; " << id;
+        }
+    }
+}
+
+TEST_P(Sensitivity, WhatIsNotReadMayBeAbsent) {
+    const auto module = GetParam()->make();
+    const std::string full = play(*module);
+    std::vector<std::shared_ptr<Signals>> all = frames_;
+    for (auto& frame : frames_) {
+        auto reduced = std::make_shared<Signals>(*frame);
+        for (int i = 0; i < kSignalCount; ++i) {
+            const Signal signal = static_cast<Signal>(i);
+            if (module->reads().has(signal)) continue;
+            (*reduced)[signal] = {};
+            reduced->ids(signal) = {};
+        }
+        frame = reduced;
+    }
+    EXPECT_EQ(play(*module), full);
+    frames_ = all;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Sensitivity, testing::ValuesIn(catalogueEntries()), testName);
+
+}  // namespace
+}  // namespace lumi::test

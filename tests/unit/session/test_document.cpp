@@ -1,0 +1,193 @@
+#include "session/document.h"
+
+#include <nlohmann/json.hpp>
+
+#include "support/expect_error.h"
+#include "support/tiny_scene.h"
+
+namespace lumi::test {
+namespace {
+
+TEST(Slugs, AreLowerCaseAndUnique) {
+    const std::vector<std::string> expected{"floor-paint", "floor-paint-2", "material-3", "a-b", "9", "floor-paint-3"};
+    EXPECT_EQ(slugs({"Floor Paint", "floor.paint", "", " A__b! ", "9", "FLOOR/PAINT"}, "material"), expected);
+}
+
+TEST(Document, TakesTheScenesOwnSettings) {
+    Scene scene = makeTinyScene();
+    scene.render.exposureEv = 2;
+    scene.render.module = "none";
+    scene.render.set = {{"path.max-depth", "3"}, {"view.0.buffer", "albedo"}};
+    const Document document(std::make_shared<Scene>(scene));
+    EXPECT_EQ(document.render().width, 16);
+    EXPECT_EQ(document.render().height, 12);
+    EXPECT_EQ(document.path().maxDepth, 3);
+    EXPECT_EQ(document.view(0).module, "none");
+    EXPECT_EQ(document.view(0).buffer, "albedo");
+    EXPECT_EQ(document.view(0).display.exposureEv, 2);
+    EXPECT_TRUE(document.changedValues().empty()) << document.changedValues().dump();
+}
+
+TEST(Document, AScenesBadSettingIsBadInput) {
+    Scene scene = makeTinyScene();
+    scene.render.set = {{"path.max-dept", "3"}};
+    expectError(ErrorKind::BadInput, [&] { Document document(std::make_shared<Scene>(scene)); },
+                {"tiny.json", "path.max-dept", "\"path.max-depth\""});
+}
+
+TEST(Document, EveryIdCanBeReadAndSetToItself) {
+    Document document(tinyScene());
+    const std::vector<ParameterInfo> all = document.list();
+    EXPECT_GT(all.size(), 60u);
+    for (const ParameterInfo& info : all) {
+        EXPECT_EQ(document.get(info.id), info.value) << info.id;
+        EXPECT_EQ(document.initial(info.id), info.value) << info.id;
+        EXPECT_NO_THROW(document.set(info.id, info.value)) << info.id;
+        EXPECT_FALSE(info.help.empty()) << info.id;
+    }
+    EXPECT_TRUE(document.changedValues().empty()) << document.changedValues().dump();
+}
+
+TEST(Document, EditsReachTheSceneAndLeaveTheLoadedOneAlone) {
+    Document document(tinyScene());
+    const auto loaded = document.loadedScene();
+    EXPECT_GE(document.setText("material.floor-paint-2.roughness", "0.25"), Redo::Samples);
+    document.setText("light.lamp.power", "3");
+    document.setText("environment.scale", "2");
+    EXPECT_EQ(document.scene()->materials[1].roughness, 0.25f);
+    EXPECT_EQ(document.scene()->materials[0].roughness, 0.5f);
+    EXPECT_EQ(document.scene()->lights[0].power, 3);
+    EXPECT_EQ(document.scene()->environment.scale, 2);
+    EXPECT_EQ(document.loadedScene(), loaded);
+    EXPECT_EQ(loaded->materials[1].roughness, 0.5f);
+    EXPECT_EQ(document.scene()->instances[0].mesh, loaded->instances[0].mesh);
+}
+
+TEST(Document, SettingTheSameValueIsNoChange) {
+    Document document(tinyScene());
+    const auto before = document.scene();
+    document.setText("material.floor-paint.roughness", "0.5");
+    EXPECT_EQ(document.scene(), before);
+}
+
+TEST(Document, ACopyIsAValue) {
+    Document document(tinyScene());
+    Document copy = document;
+    copy.setText("path.max-depth", "2");
+    copy.setText("light.lamp.power", "2");
+    EXPECT_EQ(document.path().maxDepth, PathSettings().maxDepth);
+    EXPECT_EQ(document.scene()->lights[0].power, 1);
+}
+
+TEST(Document, UnknownIdsNameTheNearest) {
+    Document document(tinyScene());
+    const auto refuse = [&](const char* id, std::initializer_list<std::string> parts) {
+        expectError(ErrorKind::Usage, [&] { document.setText(id, "1", "--set"); }, parts);
+    };
+    refuse("path.max-dept", {"--set", "\"path.max-depth\""});
+    refuse("material.flor-paint.roughness", {"\"material.floor-paint.roughness\""});
+    refuse("acumulate.limit", {"\"accumulate.limit\""});
+    refuse("lamp", {"unknown parameter \"lamp\""});
+    refuse("accumulate.max-sample", {"\"accumulate.max-samples\""});
+    refuse("", {"unknown parameter \"\""});
+    refuse("path.", {"unknown parameter"});
+    expectError(ErrorKind::Usage, [&] { document.get("camera.eyes"); }, {"\"camera.eye\""});
+}
+
+TEST(Document, ValuesOutOfRangeAreRefused) {
+    Document document(tinyScene());
+    expectError(ErrorKind::Usage, [&] { document.set("path.max-depth", 0); }, {"path.max-depth", "1 to 64", "0"});
+    expectError(ErrorKind::Usage, [&] { document.set("path.max-depth", std::string("x")); }, {"path.max-depth"});
+    expectError(ErrorKind::Usage, [&] { document.setText("view.0.module", "svgg"); }, {"unknown module"});
+    expectError(ErrorKind::Usage, [&] { document.setText("view.0.buffer", "albdo"); }, {"\"albedo\""});
+    EXPECT_TRUE(document.changedValues().empty());
+}
+
+TEST(Document, InstancesHaveParametersOfTheirOwn) {
+    Document document(tinyScene());
+    document.setText("accumulate@b.max-samples", "7");
+    EXPECT_EQ(std::get<int>(document.get("accumulate@b.max-samples")), 7);
+    EXPECT_NE(document.get("accumulate.max-samples"), document.get("accumulate@b.max-samples"));
+    EXPECT_EQ(document.list("accumulate@b.").size(), document.list("accumulate.").size());
+}
+
+TEST(Document, ANewModuleDropsABufferItLacks) {
+    Document document(tinyScene());
+    document.setText("view.0.buffer", "standardError");
+    document.setText("view.0.module", "none");
+    EXPECT_EQ(document.view(0).buffer, "image");
+    document.setText("view.0.buffer", "normal");
+    document.setText("view.0.module", "accumulate@x");
+    EXPECT_EQ(document.view(0).buffer, "normal");
+}
+
+TEST(Document, OnlyDrawnViewsAreActive) {
+    Document document(tinyScene());
+    EXPECT_EQ(document.activeInstances(), std::vector<std::string>{"accumulate"});
+    document.setText("view.layout", "wipe");
+    EXPECT_EQ(document.activeInstances(), (std::vector<std::string>{"accumulate", "none"}));
+    document.setText("view.1.module", "accumulate");
+    EXPECT_EQ(document.activeInstances(), std::vector<std::string>{"accumulate"});
+}
+
+TEST(Document, CameraEditsHoldUntilACameraIsChosen) {
+    Document document(movingScene());
+    const Vec3 flown(7, 8, 9);
+    document.set("camera.eye", flown);
+    document.setTime(1);
+    EXPECT_EQ(document.camera().eye, flown);
+    document.setText("camera.select", "side-view");
+    EXPECT_EQ(document.camera().eye, Vec3(5, 2, 0));
+    for (const char* name : {"Side View", "side-view", "1"}) {
+        Document other(movingScene());
+        other.setText("camera.select", name);
+        EXPECT_EQ(other.cameraIndex(), 1) << name;
+    }
+    document.setText("camera.select", "main");
+    EXPECT_NEAR(document.camera().eye.x, 0.5f, 0.3f);
+    EXPECT_NE(document.camera().eye, flown);
+}
+
+TEST(Document, ChangedValuesMakeTheSameDocument) {
+    Document document(tinyScene());
+    const std::pair<const char*, const char*> edits[] = {
+        {"render.width", "64"},           {"path.max-depth", "2"},   {"camera.select", "side-view"},
+        {"camera.fov-y-deg", "30"},       {"camera.eye", "1,2,3"},   {"camera.jitter", "none"},
+        {"view.layout", "wipe"},          {"view.1.buffer", "depth"}, {"view.0.exposure", "-1.25"},
+        {"light.lamp.intensity", "1,2,3"}, {"time", "0.1"},           {"accumulate.limit", "true"},
+        {"accumulate.max-samples", "9"},  {"sampler.kind", "halton"}, {"material.material-3.base-color", "0.1,0.2,0.3"},
+        {"environment.scale", "0.3"},     {"render.seed", "5"}};
+    for (const auto& [id, text] : edits) document.setText(id, text);
+    const nlohmann::json values = nlohmann::json::parse(document.changedValues().dump());
+    EXPECT_EQ(values.size(), std::size(edits)) << values.dump();
+    Document again(document.loadedScene());
+    again.apply(values);
+    EXPECT_EQ(again.changedValues(), values);
+    for (const ParameterInfo& info : document.list()) EXPECT_EQ(again.get(info.id), info.value) << info.id;
+}
+
+TEST(Document, DifferencesLeadFromOneToTheOther) {
+    Document a(tinyScene()), b = a;
+    a.setText("camera.eye", "1,1,1");
+    a.setText("camera.focus", "3");
+    a.setText("accumulate.limit", "true");
+    a.setText("light.lamp.power", "4");
+    b.setText("camera.eye", "2,2,2");
+    b.setText("path.clamp", "true");
+    Document moved = a;
+    moved.apply(Document::difference(a, b));
+    EXPECT_TRUE(Document::difference(moved, b).empty()) << Document::difference(moved, b).dump();
+    EXPECT_EQ(moved.camera(), b.camera());
+    EXPECT_EQ(moved.scene()->lights[0].power, 1);
+}
+
+TEST(Document, AppliesWhatIsSelectedBeforeItsEdits) {
+    Document document(tinyScene());
+    document.apply({{"camera.eye", {9, 9, 9}}, {"camera.select", "side-view"}});
+    EXPECT_EQ(document.camera().eye, Vec3(9));
+    EXPECT_EQ(document.cameraIndex(), 1);
+    expectError(ErrorKind::Usage, [&] { document.apply({{"nothing", 1}}, "shot.png"); }, {"shot.png", "nothing"});
+}
+
+}  // namespace
+}  // namespace lumi::test

@@ -1,0 +1,170 @@
+#include "session/frame_engine.h"
+
+#include "support/expect_error.h"
+#include "support/tiny_scene.h"
+
+namespace lumi::test {
+namespace {
+
+struct Engine {
+    MessageLog log;
+    FrameEngine engine{log};
+    FrameOutput draw(const Document& document, FrameNumber frame, bool cut = false) {
+        std::optional<FrameOutput> output = engine.advance({document, frame, cut, {}, {}});
+        EXPECT_TRUE(output.has_value());
+        return std::move(*output);
+    }
+};
+
+TEST(FrameEngine, TheFirstFrameIsACutAndTheNextIsNot) {
+    Engine e;
+    const Document document(tinyScene());
+    EXPECT_TRUE(e.draw(document, 0).changes.cut);
+    EXPECT_FALSE(e.draw(document, 1).changes.any());
+    EXPECT_TRUE(e.draw(document, 5).changes.cut) << "a gap in the numbers";
+    EXPECT_TRUE(e.draw(document, 6, true).changes.cut) << "asked for";
+}
+
+TEST(FrameEngine, ChangesAreTold) {
+    const auto changesAfter = [](const char* id, const char* text) {
+        Engine e;
+        Document document(tinyScene());
+        e.draw(document, 0);
+        document.setText(id, text);
+        return e.draw(document, 1).changes;
+    };
+    EXPECT_TRUE(changesAfter("camera.eye", "0,2,5.1").camera);
+    EXPECT_TRUE(changesAfter("camera.aperture", "0.1").camera);
+    EXPECT_TRUE(changesAfter("light.lamp.power", "2").lights);
+    EXPECT_TRUE(changesAfter("environment.scale", "2").lights);
+    EXPECT_TRUE(changesAfter("material.floor-paint.roughness", "0.2").materials);
+    EXPECT_FALSE(changesAfter("material.floor-paint.roughness", "0.2").lights);
+    EXPECT_TRUE(changesAfter("material.floor-paint.emission", "1,1,1").lights);
+    EXPECT_TRUE(changesAfter("path.max-depth", "2").sampling);
+    EXPECT_TRUE(changesAfter("render.seed", "2").sampling);
+    EXPECT_TRUE(changesAfter("render.spp", "2").sampling);
+    EXPECT_TRUE(changesAfter("render.width", "17").cut);
+    EXPECT_TRUE(changesAfter("camera.select", "side-view").cut);
+    EXPECT_TRUE(changesAfter("camera.eye", "0,2,500").cut) << "a teleport";
+    EXPECT_TRUE(changesAfter("time", "3").cut) << "a jump in time";
+    EXPECT_FALSE(changesAfter("time", "0.016").cut);
+    EXPECT_FALSE(changesAfter("view.0.exposure", "3").any());
+    EXPECT_FALSE(changesAfter("accumulate.limit", "true").any());
+}
+
+TEST(FrameEngine, AFrameOfTheSameNumberReplacesTheLast) {
+    Engine replaced, straight;
+    Document document(tinyScene()), other = document;
+    other.setText("camera.eye", "0,2,5.2");
+    replaced.draw(document, 0);
+    replaced.draw(other, 1);
+    const FrameOutput a = replaced.draw(document, 1);
+    straight.draw(document, 0);
+    const FrameOutput b = straight.draw(document, 1);
+    EXPECT_FALSE(a.changes.any());
+    EXPECT_EQ(*a.results.at("accumulate"), *b.results.at("accumulate"));
+    EXPECT_EQ(a.convergence.at("accumulate").samples, 2u);
+    EXPECT_EQ(*replaced.draw(document, 2).results.at("accumulate"), *straight.draw(document, 2).results.at("accumulate"));
+}
+
+TEST(FrameEngine, AReplacedFrameKeepsItsSamplesWhereOnlyAModuleChanged) {
+    Engine e;
+    Document document(tinyScene());
+    e.draw(document, 0);
+    const FrameOutput before = e.draw(document, 1);
+    document.setText("view.0.module", "none");
+    const FrameOutput after = e.draw(document, 1);
+    EXPECT_EQ((*before.signals)[Signal::Noisy], *after.results.at("none"));
+    document.setText("view.0.module", "accumulate");
+    EXPECT_EQ(*e.draw(document, 1).results.at("accumulate"), *before.results.at("accumulate"));
+}
+
+TEST(FrameEngine, AStoppedFrameChangesNothing) {
+    Engine stopped, straight;
+    Document document(tinyScene()), other = document;
+    other.setText("render.width", "33");
+    other.setText("view.0.module", "none");
+    stopped.draw(document, 0);
+    straight.draw(document, 0);
+    std::stop_source stop;
+    stop.request_stop();
+    EXPECT_FALSE(stopped.engine.advance({other, 1, false, {}, {}}, stop.get_token()).has_value());
+    EXPECT_EQ(*stopped.draw(document, 1).results.at("accumulate"), *straight.draw(document, 1).results.at("accumulate"));
+}
+
+TEST(FrameEngine, WhatIsAskedForDoesNotChangeTheImage) {
+    Engine plain, full;
+    const Document document(tinyScene());
+    for (FrameNumber frame = 0; frame < 3; ++frame) {
+        const FrameOutput a = plain.draw(document, frame);
+        const auto b = full.engine.advance({document, frame, false, SignalSet::all(), {{"accumulate", {"standardError"}}}});
+        ASSERT_TRUE(b.has_value());
+        EXPECT_EQ(*a.results.at("accumulate"), *b->results.at("accumulate"));
+        EXPECT_TRUE(b->signals->available().contains(SignalSet::all()));
+        EXPECT_TRUE(b->taps.count("accumulate-standardError"));
+    }
+}
+
+TEST(FrameEngine, BothViewsSeeTheSameSamples) {
+    Engine e;
+    Document document(tinyScene());
+    document.setText("view.layout", "side-by-side");
+    const FrameOutput frame = e.draw(document, 0);
+    EXPECT_EQ(frame.results.size(), 2u);
+    EXPECT_EQ(*frame.results.at("accumulate"), *frame.results.at("none"));
+}
+
+TEST(FrameEngine, AHiddenModuleBeginsAgainWhenItComesBack) {
+    Engine e;
+    Document shown(tinyScene()), hidden = shown;
+    hidden.setText("view.0.module", "none");
+    e.draw(shown, 0);
+    e.draw(hidden, 1);
+    e.draw(hidden, 2);
+    EXPECT_EQ(e.draw(shown, 3).convergence.at("accumulate").samples, 1u);
+    EXPECT_EQ(e.draw(shown, 4).convergence.at("accumulate").samples, 2u);
+}
+
+TEST(FrameEngine, RestsWhenEveryModuleHasConverged) {
+    Engine e;
+    Document document(tinyScene());
+    document.setText("accumulate.limit", "true");
+    document.setText("accumulate.max-samples", "2");
+    EXPECT_FALSE(e.draw(document, 0).rests());
+    EXPECT_TRUE(e.draw(document, 1).rests());
+    document.setText("view.layout", "wipe");
+    EXPECT_FALSE(e.draw(document, 2).rests()) << "the raw frame never rests";
+}
+
+TEST(FrameEngine, HistoryIsToldToBeDropped) {
+    Engine e;
+    Document document(tinyScene());
+    EXPECT_TRUE(e.draw(document, 0).historyDropped);
+    EXPECT_FALSE(e.draw(document, 1).historyDropped);
+    document.setText("camera.eye", "0,2,5.1");
+    EXPECT_TRUE(e.draw(document, 2).historyDropped);
+    document.setText("accumulate.reset", "cut-only");
+    EXPECT_TRUE(e.draw(document, 3).historyDropped) << "its history no longer fits";
+    document.setText("camera.eye", "0,2,5.2");
+    EXPECT_FALSE(e.draw(document, 4).historyDropped);
+}
+
+TEST(FrameEngine, MotionIsZeroOnACutAndNotAfterAMove) {
+    Engine e;
+    Document document(tinyScene());
+    const auto motionOf = [&](FrameNumber frame) {
+        const auto output = e.engine.advance({document, frame, false, {Signal::Motion}, {}});
+        float largest = 0;
+        const Image& motion = (*output->signals)[Signal::Motion];
+        for (int y = 8; y < motion.height(); ++y)
+            for (int x = 0; x < motion.width(); ++x) largest = std::max(largest, std::abs(motion.at(0, x, y)));
+        return largest;
+    };
+    EXPECT_EQ(motionOf(0), 0);
+    document.setText("camera.eye", "0.1,2,5");
+    EXPECT_GT(motionOf(1), 0.05f);
+    EXPECT_EQ(motionOf(2), 0) << "it stands still again";
+}
+
+}  // namespace
+}  // namespace lumi::test

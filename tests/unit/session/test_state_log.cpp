@@ -1,0 +1,131 @@
+#include "session/state_log.h"
+
+#include "base/files.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+#include "support/tiny_scene.h"
+
+namespace lumi::test {
+namespace {
+
+/// Draws documents one after the other and keeps the log.
+struct Recorder {
+    MessageLog log;
+    FrameEngine engine{log};
+    StateLog states{SceneReference{"tiny", "0123456789abcdef"}};
+    FrameOutput draw(const Document& document, FrameNumber frame) {
+        std::optional<FrameOutput> output = engine.advance({document, frame, false, {Signal::Motion}, {}});
+        states.record(*output, std::make_shared<Document>(document));
+        return std::move(*output);
+    }
+};
+
+/// The last frame of a state, drawn by a fresh engine.
+FrameOutput replayed(const std::string& state, std::shared_ptr<const Scene> scene) {
+    const Replay replay = parseReplay(state, "state");
+    Document document(scene);
+    document.apply(replay.start);
+    MessageLog log;
+    FrameEngine engine(log);
+    std::optional<FrameOutput> output;
+    for (FrameNumber frame = replay.first; frame <= replay.last; ++frame) {
+        if (const nlohmann::json* values = replay.valuesOf(frame)) document.apply(*values);
+        output = engine.advance({document, frame, frame == replay.first, {Signal::Motion}, {}});
+    }
+    return std::move(*output);
+}
+
+void expectSame(const FrameOutput& a, const FrameOutput& b) {
+    EXPECT_EQ(a.number, b.number);
+    for (const auto& [name, image] : a.results) EXPECT_EQ(*image, *b.results.at(name)) << name;
+    EXPECT_EQ((*a.signals)[Signal::Motion], (*b.signals)[Signal::Motion]);
+}
+
+TEST(StateLog, ReplaysEachFrameBitForBit) {
+    Recorder recorder;
+    const auto scene = movingScene();
+    Document document(scene);
+    const std::pair<const char*, const char*> edits[] = {
+        {"path.max-depth", "3"},   {"light.lamp.power", "2"},   {"camera.eye", "0.1,2,5"}, {"view.layout", "wipe"},
+        {"accumulate.limit", "true"}, {"camera.select", "main"}, {"render.width", "19"},    {"accumulate.reset", "cut-only"},
+        {"time", "0.01"},          {"time", "0.02"},            {"view.0.module", "none"}, {"light.lamp.power", "1"}};
+    FrameNumber frame = 0;
+    for (const auto& [id, text] : edits) {
+        document.setText(id, text);
+        const FrameOutput moved = recorder.draw(document, frame++);
+        expectSame(replayed(recorder.states.json(), scene), moved);
+        const FrameOutput still = recorder.draw(document, frame++);
+        expectSame(replayed(recorder.states.json(), scene), still);
+    }
+}
+
+TEST(StateLog, BeginsWhereHistoryBegan) {
+    Recorder recorder;
+    Document document(tinyScene());
+    for (FrameNumber frame = 0; frame < 5; ++frame) recorder.draw(document, frame);
+    EXPECT_EQ(recorder.states.startOf(4), 0u);
+    document.setText("camera.eye", "0,2,5.1");
+    recorder.draw(document, 5);
+    recorder.draw(document, 6);
+    EXPECT_EQ(recorder.states.startOf(6), 4u) << "the frame before the move, which motion refers to";
+    EXPECT_EQ(recorder.states.startOf(3), 0u);
+    document.setText("render.width", "20");
+    recorder.draw(document, 7);
+    EXPECT_EQ(recorder.states.startOf(7), 7u) << "a cut";
+}
+
+TEST(StateLog, UnchangedFramesTakeNoSpace) {
+    Recorder recorder;
+    const Document document(tinyScene());
+    recorder.draw(document, 0);
+    recorder.draw(document, 1);
+    const size_t length = recorder.states.json().size();
+    for (FrameNumber frame = 2; frame < 9; ++frame) recorder.draw(document, frame);
+    EXPECT_EQ(recorder.states.json().size(), length);
+}
+
+TEST(StateLog, AReplacedFrameIsToldOnce) {
+    Recorder recorder;
+    Document document(tinyScene());
+    recorder.draw(document, 0);
+    recorder.draw(document, 1);
+    document.setText("accumulate.limit", "true");
+    recorder.draw(document, 1);
+    EXPECT_EQ(recorder.states.size(), 2u);
+    EXPECT_NE(recorder.states.json().find("accumulate.limit"), std::string::npos);
+}
+
+TEST(StateLog, HoldsWhatAReplayNeeds) {
+    Recorder recorder;
+    Document document(tinyScene());
+    document.setText("render.seed", "3");
+    recorder.draw(document, 4);
+    const Replay replay = parseReplay(recorder.states.json({{"view", 0}}), "state");
+    EXPECT_EQ(replay.scene.name, "tiny");
+    EXPECT_EQ(replay.scene.digest, "0123456789abcdef");
+    EXPECT_FALSE(replay.isa.empty());
+    EXPECT_EQ(replay.first, 4);
+    EXPECT_EQ(replay.last, 4);
+    EXPECT_EQ(replay.start.at("render.seed"), 3);
+    EXPECT_EQ(replay.output.at("view"), 0);
+}
+
+TEST(ReadReplay, RefusesWhatIsNoState) {
+    TemporaryFolder folder;
+    const auto refuse = [&](const std::string& text, const char* part) {
+        expectError(ErrorKind::BadInput, [&] { parseReplay(text, "shot.png"); }, {"shot.png", part});
+    };
+    refuse("", "holds no state");
+    refuse("[1]", "holds no state");
+    refuse("{\"format\": 3}", "holds no state");
+    refuse("{\"format\": \"lumiscope-state\", \"version\": 99}", "version");
+    refuse("{\"format\": \"lumiscope-state\", \"version\": 1}", "\"scene\"");
+    refuse(R"({"format": "lumiscope-state", "version": 1, "scene": {"name": 3}})", "\"name\"");
+    refuse(R"({"format": "lumiscope-state", "version": 1, "scene": {"name": "a", "digest": "b"}, "isa": "v3",
+               "start": {"frame": 5, "set": {}}, "frame": 2, "frames": []})", "order");
+    expectError(ErrorKind::BadInput, [&] { readReplay(folder / "missing.exr"); }, {"missing.exr", "no such file"});
+    expectError(ErrorKind::BadInput, [&] { readReplay(folder / "notes.txt"); }, {"notes.txt"});
+}
+
+}  // namespace
+}  // namespace lumi::test
