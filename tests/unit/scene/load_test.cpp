@@ -41,6 +41,22 @@ TEST(LoadScene, UnknownKindsAreNamed) {
     expectError(ErrorKind::BadInput, [&] { loadScene(folder / "d.json", log); }, {"d.json: is a directory"});
 }
 
+TEST(LoadScene, BrokenFilesSayWhereAndWhy) {
+    const std::array<std::pair<const char*, const char*>, 6> faults{{
+        {"truncated.json", "truncated.json:4:49: string without closing quote"},
+        {"unknown_key.json", "unknown_key.json:4:31: unknown key \"rougness\"; expected \"roughness\""},
+        {"out_of_range.json", "out_of_range.json:4:37: \"segments\" is 100000; expected 3 to 4096"},
+        {"missing_asset.json", "missing_asset.json:3:31: asset \"hall\": "},
+        {"cycle.json", "cycle.json:4:29: instance \"a\" is its own ancestor"},
+        {"directory_as_sky.json", "directory_as_sky.json:3:27: \"environment\": "},
+    }};
+    for (const auto& [name, message] : faults) {
+        MessageLog log;
+        const fs::path path = fs::path(LUMISCOPE_SOURCE_DIR) / "tests/data/scenes" / name;
+        expectError(ErrorKind::BadInput, [&] { loadScene(path, log); }, {message});
+    }
+}
+
 TEST(LoadScene, OurOwnFilesStayDarkButGetACamera) {
     TemporaryFolder folder;
     writeFileAtomically(folder / "s.json", std::string_view(
