@@ -13,7 +13,7 @@ Mesh leaf(float length, float width, float arch, float wave, int seed) {
         [&](float u, float v) {
             const float across = 2 * u - 1;
             // Widest at a third of its length, pointed at the tip.
-            const float half = width * 0.5f * std::pow(std::sin(kPi * std::pow(v, 0.72f)), 0.85f);
+            const float half = width * 0.5f * std::pow(std::max(std::sin(kPi * std::pow(v, 0.72f)), 0.0f), 0.85f);
             const float bend = arch * v * v;
             const float fold = 0.22f * half * (1 - std::abs(across));
             const float ripple = wave * half * across * across *
