@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <bit>
 #include <cmath>
 #include <memory>
+#include <mutex>
 
 #include "base/parallel.h"
 #include "scene/deform.h"
@@ -15,7 +14,6 @@ namespace lumi {
 namespace {
 
 constexpr int kRays = 48;
-constexpr int kEnclosing = kRays * 3 / 4;
 
 /// Directions spread evenly over the sphere by the golden angle.
 std::array<Vec3, kRays> spreadDirections() {
@@ -28,23 +26,41 @@ std::array<Vec3, kRays> spreadDirections() {
     return directions;
 }
 
-/// Bits of the rays from the origin that meet the triangle a b c. A ray through the corner pyramid has the three edge
+/// The nearest triangle that each ray meets: its distance, and whether it shows the origin its front.
+struct FirstHits {
+    std::array<float, kRays> distance;
+    std::array<bool, kRays> front{};
+    FirstHits() { distance.fill(kInfinity); }
+
+    void add(size_t ray, float at, bool isFront) {
+        if (at > distance[ray] || (at == distance[ray] && front[ray])) return;
+        distance[ray] = at;
+        front[ray] = isFront;
+    }
+    void add(const FirstHits& other) {
+        for (size_t i = 0; i < kRays; ++i)
+            if (other.distance[i] < kInfinity) add(i, other.distance[i], other.front[i]);
+    }
+};
+
+/// Adds the rays from the origin that meet the triangle a b c. A ray through the corner pyramid has the three edge
 /// planes on one side; the triangle's own plane tells ahead from behind.
-uint64_t raysThrough(const std::array<Vec3, kRays>& directions, const Vec3& a, const Vec3& b, const Vec3& c) {
+void addTriangle(const std::array<Vec3, kRays>& directions, const Vec3& a, const Vec3& b, const Vec3& c, bool mirrored,
+                 FirstHits& hits) {
     const Vec3 ab = glm::cross(a, b), bc = glm::cross(b, c), ca = glm::cross(c, a);
     const float volume = glm::dot(a, bc);
-    uint64_t hits = 0;
+    if (volume == 0) return;
     for (size_t i = 0; i < kRays; ++i) {
         const float u = glm::dot(directions[i], ab), v = glm::dot(directions[i], bc), w = glm::dot(directions[i], ca);
-        const bool ahead = volume > 0 ? u >= 0 && v >= 0 && w >= 0 : volume < 0 && u <= 0 && v <= 0 && w <= 0;
-        hits |= static_cast<uint64_t>(ahead) << i;
+        const bool ahead = volume > 0 ? u >= 0 && v >= 0 && w >= 0 : u <= 0 && v <= 0 && w <= 0;
+        // u + v + w is the triangle's normal times the direction.
+        if (ahead) hits.add(i, volume / (u + v + w), (volume < 0) != mirrored);
     }
-    return hits;
 }
 
-/// Bits of the rays from `origin` that meet the instance at rest.
+/// Adds what the rays from `origin` meet of the instance at rest.
 void traceInstance(const Scene& scene, const NodePose& pose, const Instance& instance, const Vec3& origin,
-                   const std::array<Vec3, kRays>& directions, std::atomic<uint64_t>& hits) {
+                   const std::array<Vec3, kRays>& directions, FirstHits& hits) {
     const Mesh& mesh = *instance.mesh;
     const bool skinned = instance.skin >= 0 && !mesh.skin.empty();
     Mat4 worldFromObject(1);
@@ -57,15 +73,17 @@ void traceInstance(const Scene& scene, const NodePose& pose, const Instance& ins
                                                    : std::vector<float>(), joints);
     }
     const std::vector<Vec3>& positions = mesh.deforms() ? deformed.positions : mesh.positions;
+    const bool mirrored = isMirroring(worldFromObject);
+    std::mutex mutex;
     parallelRanges(static_cast<int64_t>(mesh.triangles.size()), 4096, [&](int64_t begin, int64_t end) {
-        if (std::popcount(hits.load(std::memory_order_relaxed)) >= kEnclosing) return;
-        uint64_t found = 0;
+        FirstHits found;
         for (int64_t i = begin; i < end; ++i) {
             const UVec3 t = mesh.triangles[static_cast<size_t>(i)];
             const auto corner = [&](uint32_t v) { return transformPoint(worldFromObject, positions[v]) - origin; };
-            found |= raysThrough(directions, corner(t.x), corner(t.y), corner(t.z));
+            addTriangle(directions, corner(t.x), corner(t.y), corner(t.z), mirrored, found);
         }
-        hits.fetch_or(found, std::memory_order_relaxed);
+        const std::lock_guard lock(mutex);
+        hits.add(found);
     });
 }
 
@@ -86,13 +104,9 @@ float framingDistance(const Vec3& halfSize, const Mat3& axes, float halfAngle) {
 float enclosure(const Scene& scene, const Vec3& origin) {
     const std::array<Vec3, kRays> directions = spreadDirections();
     const NodePose pose = poseNodes(scene, {});
-    std::atomic<uint64_t> hits{0};
-    for (const Instance& instance : scene.instances) {
-        // Once enough rays hit, more cannot change the answer.
-        if (std::popcount(hits.load()) >= kEnclosing) break;
-        traceInstance(scene, pose, instance, origin, directions, hits);
-    }
-    return static_cast<float>(std::popcount(hits.load())) / kRays;
+    FirstHits hits;
+    for (const Instance& instance : scene.instances) traceInstance(scene, pose, instance, origin, directions, hits);
+    return static_cast<float>(std::count(hits.front.begin(), hits.front.end(), true)) / kRays;
 }
 
 Camera defaultCamera(const Scene& scene) {

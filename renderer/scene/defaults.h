@@ -5,11 +5,13 @@
 namespace lumi {
 
 /// The camera of a scene that has none, named "default", with a vertical angle of 45 degrees. If three of four rays from
-/// the centre of the bounds hit something it stands there and looks along the longer horizontal axis; otherwise it
-/// frames the bounds from the front, a little from the right and above.
+/// the centre of the bounds hit something that faces the centre, as a room's walls do and a solid's inside does not, it
+/// stands there and looks along the longer horizontal axis; otherwise it frames the bounds from the front, a little from
+/// the right and above.
 Camera defaultCamera(const Scene& scene);
 
-/// Share of directions from `origin` in which something stands, of a few dozen spread evenly over the sphere.
+/// Share of directions from `origin` in which the first thing met shows its front, of a few dozen spread evenly over the
+/// sphere.
 float enclosure(const Scene& scene, const Vec3& origin);
 
 /// True if anything in the scene shines: a light, an environment, or an emissive material that is in use.

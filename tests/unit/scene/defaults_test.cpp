@@ -21,14 +21,22 @@ Scene sceneOf(Mesh mesh, const Vec3& at = Vec3(0)) {
     return scene;
 }
 
+/// A box seen from within: its walls face the middle.
+Mesh roomMesh(const Vec3& size) {
+    Mesh mesh = boxMesh(size);
+    for (UVec3& t : mesh.triangles) std::swap(t.y, t.z);
+    for (Vec3& n : mesh.normals) n = -n;
+    return mesh;
+}
+
 TEST(DefaultCamera, StandsInsideRooms) {
     // Along the longer horizontal axis, at the centre.
-    const Camera alongX = defaultCamera(sceneOf(boxMesh({8, 3, 4}), {1, 2, 3}));
+    const Camera alongX = defaultCamera(sceneOf(roomMesh({8, 3, 4}), {1, 2, 3}));
     EXPECT_EQ(alongX.name, "default");
     EXPECT_EQ(alongX.fovYDeg, 45);
     EXPECT_LT(glm::distance(alongX.eye, Vec3(1, 2, 3)), 1e-5f);
     EXPECT_GT(std::abs(glm::normalize(alongX.target - alongX.eye).x), 0.9999f);
-    const Camera alongZ = defaultCamera(sceneOf(boxMesh({4, 30, 8})));
+    const Camera alongZ = defaultCamera(sceneOf(roomMesh({4, 30, 8})));
     EXPECT_GT(std::abs(glm::normalize(alongZ.target - alongZ.eye).z), 0.9999f);
 }
 
@@ -51,11 +59,23 @@ TEST(DefaultCamera, FramesWhatIsNotARoom) {
 }
 
 TEST(DefaultCamera, EnclosureCountsDirections) {
-    EXPECT_EQ(enclosure(sceneOf(boxMesh(Vec3(2))), Vec3(0)), 1);
-    EXPECT_EQ(enclosure(sceneOf(boxMesh(Vec3(2))), Vec3(5, 0, 0)) > 0.3f, false);
+    EXPECT_EQ(enclosure(sceneOf(roomMesh(Vec3(2))), Vec3(0)), 1);
+    EXPECT_LT(enclosure(sceneOf(boxMesh(Vec3(2))), Vec3(5, 0, 0)), 0.3f);
     EXPECT_EQ(enclosure(Scene(), Vec3(0)), 0);
     // A wide floor below covers half of all directions.
     EXPECT_NEAR(enclosure(sceneOf(rectangleMesh(1000, 1000, Facing::Y)), Vec3(0, 1, 0)), 0.5f, 0.05f);
+}
+
+TEST(DefaultCamera, ClosedObjectsAreNoRooms) {
+    Scene object = sceneOf(boxMesh({2, 1, 1}));
+    EXPECT_EQ(enclosure(object, Vec3(0)), 0);
+    EXPECT_GT(glm::distance(defaultCamera(object).eye, Vec3(0)), 2);
+    object.nodes[0].local.scale = {-1, 1, 1};
+    EXPECT_EQ(enclosure(object, Vec3(0)), 0) << "mirroring does not turn an object inside out";
+    // A crate in the middle of a room: the centre lies inside the crate, whose inside is met first.
+    object.instances.push_back({"room", std::make_shared<const Mesh>(roomMesh(Vec3(20))), -1, -1, -1, -1});
+    EXPECT_EQ(enclosure(object, Vec3(0)), 0);
+    EXPECT_EQ(enclosure(object, Vec3(0, 5, 0)), 1);
 }
 
 TEST(DefaultCamera, EmptyScenesGetOneToo) {
