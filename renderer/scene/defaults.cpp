@@ -99,6 +99,12 @@ float framingDistance(const Vec3& halfSize, const Mat3& axes, float halfAngle) {
     return distance;
 }
 
+/// Whether a material is there to light others. An emission texture without extra strength only paints glowing parts,
+/// as on models that expect to be lit from outside.
+bool illuminates(const Material& material) {
+    return material.emits() && (!material.emissionTexture || maxComponent(material.emission) > 1);
+}
+
 }  // namespace
 
 float enclosure(const Scene& scene, const Vec3& origin) {
@@ -131,15 +137,15 @@ bool hasLight(const Scene& scene) {
     if (!scene.lights.empty() || scene.environment.visible()) return true;
     for (const Instance& instance : scene.instances) {
         if (instance.material >= 0) {
-            if (scene.materials[static_cast<size_t>(instance.material)].emits()) return true;
+            if (illuminates(scene.materials[static_cast<size_t>(instance.material)])) return true;
             continue;
         }
         if (instance.mesh->triangleMaterial.empty()) {
-            if (scene.materials[instance.mesh->material].emits()) return true;
+            if (illuminates(scene.materials[instance.mesh->material])) return true;
             continue;
         }
         for (const uint32_t material : instance.mesh->triangleMaterial)
-            if (scene.materials[material].emits()) return true;
+            if (illuminates(scene.materials[material])) return true;
     }
     return false;
 }

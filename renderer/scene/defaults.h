@@ -14,7 +14,8 @@ Camera defaultCamera(const Scene& scene);
 /// sphere.
 float enclosure(const Scene& scene, const Vec3& origin);
 
-/// True if anything in the scene shines: a light, an environment, or an emissive material that is in use.
+/// True if anything in the scene lights it: a light, an environment, or an emissive material that is in use. Emission
+/// painted by a texture at strength 1 or below only glows and does not count.
 bool hasLight(const Scene& scene);
 
 /// Gives the scene a camera if it has none and, if `allowSky` and nothing shines, the built-in sky and a warning.

@@ -145,5 +145,18 @@ TEST(DefaultSky, TheSunStandsWhereItIsPut) {
     EXPECT_GT(glm::dot(brightest, Vec3(std::cos(radians(30)), 0.5f, 0)), 0.999f);
 }
 
+TEST(Defaults, PaintedGlowIsNoLight) {
+    Scene scene = sceneOf(boxMesh(Vec3(1)));
+    Material& material = scene.materials[0];
+    material.emission = Vec3(1);
+    EXPECT_TRUE(hasLight(scene));
+    auto image = std::make_shared<TextureImage>();
+    image->levels.push_back({{1, 1}, {255, 255, 255, 255}, {}});
+    material.emissionTexture.image = image;
+    EXPECT_FALSE(hasLight(scene)) << "a texture of strength 1 paints glowing parts";
+    material.emission = Vec3(4);
+    EXPECT_TRUE(hasLight(scene)) << "strength above 1 is meant to light";
+}
+
 }  // namespace
 }  // namespace lumi::test
