@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 
+#include "app/option_text.h"
 #include "base/error.h"
 #include "reconstruct/catalog.h"
 #include "scene/load.h"
@@ -17,12 +17,6 @@ constexpr const char* kVersionText = "lumiscope 0.1.0";
 constexpr const char* kExitCodes =
     "Exit codes: 0 good; 1 a check did not hold; 2 usage, unknown scene, module or id; 3 bad input, replayed scene\n"
     "changed; 4 no display or OpenGL; 5 memory limit, disk full; 130 interrupted.";
-
-/// What the user typed for the options that are shared by several commands.
-struct SharedText {
-    std::vector<std::string> set;
-    std::string size, camera, exposure, fps, spp, seed;
-};
 
 std::string sceneList() {
     std::string text = "Scenes: a path (.json .gltf .glb .obj, or an .hdr/.exr sky), or one of:\n";
@@ -55,38 +49,6 @@ std::string renderFooter() {
            sceneList() + moduleList() + "\n" + kExitCodes;
 }
 
-template <class T>
-T parseWhole(const std::string& text, const std::string& option, const char* expected, T least) {
-    T value{};
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc() || end != text.data() + text.size() || value < least)
-        throwUsage({"not understood", option, expected, '"' + text + '"'});
-    return value;
-}
-
-Extent2 parseSize(const std::string& text, const std::string& option) {
-    const size_t x = text.find('x');
-    const char* expected = "WIDTHxHEIGHT, as 1280x720";
-    if (x == std::string::npos) throwUsage({"not understood", option, expected, '"' + text + '"'});
-    return {parseWhole<int>(text.substr(0, x), option, expected, 1),
-            parseWhole<int>(text.substr(x + 1), option, expected, 1)};
-}
-
-FrameRange parseFrames(const std::string& text) {
-    const char* expected = "a number N, or a range A..B with A < B";
-    const size_t dots = text.find("..");
-    FrameRange range;
-    if (dots == std::string::npos) {
-        range.end = parseWhole<int64_t>(text, "--frames", expected, 1);
-    } else {
-        range.begin = parseWhole<int64_t>(text.substr(0, dots), "--frames", expected, 0);
-        range.end = parseWhole<int64_t>(text.substr(dots + 2), "--frames", expected, 0);
-        if (range.begin >= range.end) throwUsage({"not understood", "--frames", expected, '"' + text + '"'});
-    }
-    if (range.end > 10'000'000) throwUsage({"too many frames", "--frames", "at most 10000000", '"' + text + '"'});
-    return range;
-}
-
 void addShared(CLI::App& app, SharedText& text, SceneOptions& scene) {
     app.add_option("--module", scene.modules, "Method that makes the image, as `list modules` names it")
         ->type_name("INSTANCE")
@@ -115,31 +77,6 @@ void addMachine(CLI::App& app, MachineOptions& machine, bool computes) {
         ->check(CLI::Range(1, 1024).description(""));
     app.add_option("--isa", machine.isa, "Instruction set to use: baseline, v3 or v4 (the best)")->type_name("NAME");
     app.add_option("--memory-limit", machine.memoryLimit, "Refuse to use more, as 8G or 50% (75%)")->type_name("SIZE");
-}
-
-/// Options in the order in which they take effect: those with a name of their own first, then --set as typed.
-void finishShared(const SharedText& text, SceneOptions& scene) {
-    auto& values = scene.values;
-    for (size_t i = 0; i < scene.modules.size() && i < 2; ++i)
-        values.push_back({fmt::format("view.{}.module", i), scene.modules[i], "--module"});
-    if (!text.size.empty()) {
-        const Extent2 size = parseSize(text.size, "--size");
-        values.push_back({"render.width", std::to_string(size.width), "--size"});
-        values.push_back({"render.height", std::to_string(size.height), "--size"});
-    }
-    const TypedValue named[] = {{"render.spp", text.spp, "--spp"},
-                                {"render.fps", text.fps, "--fps"},
-                                {"render.seed", text.seed, "--seed"},
-                                {"camera.select", text.camera, "--camera"},
-                                {"view.0.exposure", text.exposure, "--exposure"}};
-    for (const TypedValue& value : named)
-        if (!value.text.empty()) values.push_back(value);
-    for (const std::string& entry : text.set) {
-        const size_t equals = entry.find('=');
-        if (equals == std::string::npos || equals == 0)
-            throwUsage({"not understood", "--set", "ID=VALUE", '"' + entry + '"'});
-        values.push_back({entry.substr(0, equals), entry.substr(equals + 1), "--set"});
-    }
 }
 
 /// Says which option was meant, where CLI11 only says which one it does not know.
@@ -275,18 +212,18 @@ private:
         else if (info_->parsed()) finishInfo();
         else if (list_->parsed()) line_.command = Command::List;
         else if (view_->parsed()) finishView();
-        else finishShared(windowText_, line_.scene);
+        else addValues(windowText_, line_.scene);
         return line_;
     }
 
     void finishRender() {
         line_.command = Command::Render;
         RenderOptions& render = line_.render;
-        finishShared(renderText_, render.scene);
+        addValues(renderText_, render.scene);
         if (render.scene.modules.size() > 1)
             throwUsage({"render runs one module", "--module", "one instance", ""});
         if (!frames_.empty()) render.frames = parseFrames(frames_);
-        if (!warmUp_.empty()) render.warmUp = parseWhole<int64_t>(warmUp_, "--warm-up", "a number of frames", 0);
+        if (!warmUp_.empty()) render.warmUp = parseWhole(warmUp_, "--warm-up", "a number of frames", 0);
         render.progress = progress_ == "always" ? Progress::Always : progress_ == "never" ? Progress::Never : Progress::Auto;
         if (render.scene.scene.empty() && render.replay.empty())
             throwUsage({"render needs a scene", "", "lumiscope render SCENE, or --replay FILE", ""});
@@ -300,13 +237,13 @@ private:
         line_.command = Command::Info;
         line_.scene = {};
         line_.scene.scene = infoScene_;
-        finishShared(infoText_, line_.scene);
+        addValues(infoText_, line_.scene);
     }
 
     void finishView() {
         line_.command = Command::View;
         line_.scene = viewScene_;
-        finishShared(viewText_, line_.scene);
+        addValues(viewText_, line_.scene);
         if (!offscreen_) throwUsage({"view draws without a display", "", "--offscreen", ""});
         if (line_.view.out.empty()) throwUsage({"view needs a folder", "", "--out DIR", ""});
         if (!windowSize_.empty()) line_.view.size = parseSize(windowSize_, "--window");

@@ -118,11 +118,11 @@ public:
                            scene->contentDigest});
         Document document(scene);
         const std::string where = options_.replay.string();
-        document.apply(replay.start, where);
+        applyState(document, replay.start);
         start(document, file, OutputChoice::parse(replay.output, where), replay.scene);
         first_ = replay.first, last_ = replay.last;
         for (FrameNumber number = replay.first; number <= replay.last; ++number) {
-            if (const json* values = replay.valuesOf(number)) document.apply(*values, where);
+            if (const json* values = replay.valuesOf(number)) applyState(document, *values);
             draw(document, number, number == replay.first, number == replay.last);
         }
         return finish();
@@ -180,6 +180,15 @@ private:
         outputs_->finish();
         summary_.print(*outputs_, machine_, log_, total_.elapsedMs() / 1000);
         return 0;
+    }
+
+    /// Values that do not fit are the file's fault, not the command's.
+    void applyState(Document& document, const json& values) const {
+        try {
+            document.apply(values, options_.replay.string());
+        } catch (const Error& error) {
+            throw Error(error.kind() == ErrorKind::Usage ? ErrorKind::BadInput : error.kind(), error.text());
+        }
     }
 
     /// Where the replayed scene is now: as given beside --replay, as it was called then, or beside the file.

@@ -60,7 +60,7 @@ Changes differences(const FrameState& before, const FrameState& now, const Posed
     changes.lights = lightsMove(posed);
     addEdits(a, b, changes);
     changes.sampling = a.path() != b.path() || a.render().samplesPerPixel != b.render().samplesPerPixel ||
-                       a.render().seed != b.render().seed || a.jitter() != b.jitter();
+                       a.render().seed != b.render().seed || before.jitter != now.jitter;
     return changes;
 }
 

@@ -10,6 +10,7 @@ namespace lumi {
 struct FrameState {
     const Document& document;
     const CameraPose& camera;
+    Jitter jitter = Jitter::Auto;  ///< in effect
 };
 
 /// Is there no way from `before` to `now`: another scene or image size, time that goes back or forward by more than

@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "reconstruct/catalog.h"
-#include "session/changes.h"
 #include "session/view_buffers.h"
 
 namespace lumi {
@@ -49,25 +48,25 @@ std::optional<FrameOutput> FrameEngine::advance(const FrameRequest& request, std
     const bool replaces = current_ && request.frame == current_->frame;
     const std::optional<Completed>& previous = replaces ? before_ : current_;
 
-    Completed next{request.frame, request.document, {}, nullptr, nullptr, {}};
+    Completed next{request.frame, request.document, {}, Jitter::Auto, nullptr, nullptr, {}};
     const RenderSettings& render = request.document.render();
     next.camera = poseCamera(request.document.camera(), {render.width, render.height});
 
     FrameOutput frame;
     frame.changes.cut = !previous || previous->frame + 1 != request.frame ||
-                        isCut({previous->document, previous->camera}, {next.document, next.camera});
+                        isCut(previous->state(), next.state());
+    prepareInstances(request, next.camera.extent, frame.changes.cut ? nullptr : &*previous);
+    next.jitter = effectiveJitter(next.document);
     {
         const auto measured = timer.measure("pose");
         const float previousTime = frame.changes.cut ? next.document.time() : previous->document.time();
         next.scene = pose(next.document, previousTime, previous ? previous->scene.get() : nullptr,
                           current_ ? current_->scene : nullptr);
     }
-    if (!frame.changes.cut)
-        frame.changes = differences({previous->document, previous->camera}, {next.document, next.camera}, *next.scene);
+    if (!frame.changes.cut) frame.changes = differences(previous->state(), next.state(), *next.scene);
 
     // Without a cut `previous` holds the frame before; a copy, since it is overwritten below.
     const CameraPose previousCamera = frame.changes.cut ? next.camera : previous->camera;
-    prepareInstances(request, next.camera.extent, frame.changes.cut ? nullptr : &*previous);
     if (!traceSignals(request, previousCamera, replaces, next, timer, stop)) return std::nullopt;
     if (!runModules(request, next, previousCamera, frame, timer, stop)) return std::nullopt;
 
@@ -134,7 +133,7 @@ SignalSet FrameEngine::wantedSignals(const FrameRequest& request) {
     return wanted;
 }
 
-Jitter FrameEngine::jitter(const Document& document) {
+Jitter FrameEngine::effectiveJitter(const Document& document) {
     if (document.jitter() != Jitter::Auto) return document.jitter();
     return running(document.view(0).module).module->preferredJitter();
 }
@@ -150,7 +149,7 @@ FrameSampling FrameEngine::sampling(const FrameRequest& request, const Completed
     sampling.samplesPerPixel = render.samplesPerPixel;
     sampling.firstSample = static_cast<uint64_t>(request.frame) * static_cast<uint64_t>(render.samplesPerPixel);
     sampling.seed = static_cast<uint32_t>(render.seed);
-    sampling.jitter = jitter(next.document);
+    sampling.jitter = next.jitter;
     sampling.path = next.document.path();
     sampling.wanted = wantedSignals(request);
     return sampling;
@@ -168,12 +167,7 @@ bool FrameEngine::traceSignals(const FrameRequest& request, const CameraPose& pr
     const FrameSampling asked = sampling(request, next, previousCamera);
     if (replaces && current_->scene == next.scene && current_->camera == next.camera &&
         current_->signals->available().contains(asked.wanted)) {
-        const FrameState before{current_->document, current_->camera}, now{next.document, next.camera};
-        const Jitter oldJitter = current_->document.jitter();
-        const bool sameJitter = oldJitter == next.document.jitter() &&
-                                (oldJitter != Jitter::Auto ||
-                                 current_->document.view(0).module == next.document.view(0).module);
-        if (!differences(before, now, *next.scene).sampling && sameJitter) {
+        if (!differences(current_->state(), next.state(), *next.scene).sampling) {
             next.signals = current_->signals;
             next.rays = current_->rays;
             return true;

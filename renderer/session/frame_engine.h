@@ -8,6 +8,7 @@
 
 #include "base/messages.h"
 #include "reconstruct/module.h"
+#include "session/changes.h"
 #include "session/document.h"
 #include "trace/tracer.h"
 
@@ -65,9 +66,11 @@ private:
         FrameNumber frame = -1;
         Document document;
         CameraPose camera;
+        Jitter jitter = Jitter::Auto;  ///< in effect
         std::shared_ptr<const PosedScene> scene;
         std::shared_ptr<const Signals> signals;
         TraceCounts rays;
+        FrameState state() const { return {document, camera, jitter}; }
     };
     struct Instance {
         std::unique_ptr<Module> module;
@@ -85,7 +88,7 @@ private:
     Instance& running(const std::string& name);
     void adoptFreshInstances(const Document& document, bool replaces);
     SignalSet wantedSignals(const FrameRequest& request);
-    Jitter jitter(const Document& document);
+    Jitter effectiveJitter(const Document& document);
     FrameSampling sampling(const FrameRequest& request, const Completed& next, const CameraPose& previousCamera);
     bool traceSignals(const FrameRequest& request, const CameraPose& previousCamera, bool replaces, Completed& next,
                       StageTimer& timer, std::stop_token stop);

@@ -41,10 +41,13 @@ void Session::Impl::noteChange(Redo redo) {
 }
 
 void Session::Impl::abandonFrame() {
+    // While changes keep coming (a camera is flown) every second frame may finish if it is short, else nothing would
+    // ever be seen.
+    constexpr double kStreamMs = 100, kShortMs = 1000;
+    const bool streams = sinceChange.elapsedMs() < kStreamMs;
+    sinceChange.restart();
     if (!drawing || frameStop.stop_requested()) return;
-    // While changes keep coming (a camera is flown) every second frame may finish, else nothing would ever be seen.
-    constexpr double kLongMs = 1000;
-    if (guarded && expectedFrameMs < kLongMs) return;
+    if (guarded && streams && sinceFrameBegan.elapsedMs() < kShortMs) return;
     frameStop.request_stop();
 }
 
@@ -60,6 +63,13 @@ void Session::Impl::replaceDocument(const Document& next) {
 
 Session::Session(MessageLog& log) : impl_(std::make_unique<Impl>(log)) {}
 Session::~Session() = default;
+
+void Session::setInspecting(bool on) {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->inspecting == on) return;
+    impl_->inspecting = on;
+    if (on && impl_->document && impl_->resting) impl_->noteChange(Redo::Filter);
+}
 
 void Session::open(const std::filesystem::path& scene, int sceneIndex, const std::string& variant,
                    std::vector<std::pair<std::string, std::string>> set) {

@@ -113,6 +113,8 @@ public:
     std::shared_ptr<const Snapshot> snapshot() const;
 
     std::vector<BufferEntry> buffers(const std::string& module) const;
+    /// While on, every frame has all signals and taps, shown or not, for inspect(); the pictures stay the same.
+    void setInspecting(bool on);
     /// All buffers present in the snapshot at a pixel.
     std::vector<PixelValue> inspect(const Snapshot& snapshot, Pixel pixel) const;
 

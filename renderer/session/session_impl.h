@@ -34,6 +34,7 @@ struct Session::Impl {
         bool cut = false;
         std::optional<Redo> redo;  ///< what the changes that it takes up invalidate
         int stepsBack = 0;
+        bool inspecting = false;  ///< every buffer is wanted
         Save save;
         std::stop_token stop;
     };
@@ -79,6 +80,7 @@ struct Session::Impl {
     EditHistory history;
     std::optional<Redo> pending;  ///< the worst of the changes that no frame has seen
     bool rendering = true, playing = false, timeEdited = false;
+    bool inspecting = false;  ///< frames have every buffer
     bool stepWanted = false, restartWanted = false;
     int stepsBack = 0;
     std::deque<Save> saves;
@@ -86,8 +88,8 @@ struct Session::Impl {
     bool frameFailed = false;  ///< drawing failed: wait for a change
     std::stop_source frameStop;
     bool drawing = false;  ///< a frame that changes may abandon
-    bool guarded = false;  ///< one frame was abandoned: let this one finish if it is short
-    double expectedFrameMs = 0;
+    bool guarded = false;  ///< the frame before was abandoned
+    Timer sinceFrameBegan, sinceChange;
     uint64_t abandoned = 0;
     std::shared_ptr<const Snapshot> snapshot;
     LoadStatus loading;
@@ -95,6 +97,8 @@ struct Session::Impl {
     std::stop_source loadStop;
     Origin origin;
     StateLog states;
+    std::shared_ptr<const Document> takenDocument;  ///< what the last frame was begun with, at takenRevision
+    uint64_t takenRevision = 0;
 
     // Of the render thread alone.
     FrameEngine engine;

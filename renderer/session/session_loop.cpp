@@ -58,6 +58,7 @@ Session::Impl::Work Session::Impl::takeWork() {
     frameStop = std::stop_source();
     Work work;
     work.stop = frameStop.get_token();
+    work.inspecting = inspecting;
     const bool idle = (!rendering || resting) && !stepWanted;
     const Redo redo = pending.value_or(Redo::Display);
     if (restartWanted) {
@@ -87,7 +88,11 @@ Session::Impl::Work Session::Impl::takeWork() {
     work.redo = std::exchange(pending, std::nullopt);
     timeEdited = false;
     drawing = newFrame || work.kind == Work::Redraw;
-    work.document = std::make_shared<Document>(*document);
+    sinceFrameBegan.restart();
+    // Frames of an unchanged document share it: that keeps the log short.
+    if (!takenDocument || takenRevision != revision) takenDocument = std::make_shared<Document>(*document);
+    takenRevision = revision;
+    work.document = takenDocument;
     return work;
 }
 
@@ -111,7 +116,14 @@ void Session::Impl::perform(const Work& work) {
 void Session::Impl::drawFrame(const Work& work) {
     const bool first = work.cut || shown.number < 0;
     const FrameNumber number = first ? 0 : work.kind == Work::Redraw ? shown.number : shown.number + 1;
-    std::optional<FrameOutput> frame = engine.advance({*work.document, number, first, {}, {}}, work.stop);
+    FrameRequest request{*work.document, number, first, {}, {}};
+    if (work.inspecting)
+        for (const std::string& instance : work.document->activeInstances()) {
+            const BufferSelection all = BufferSelection::all(instance);
+            request.signals |= all.signals;
+            request.taps[instance] = all.taps;
+        }
+    std::optional<FrameOutput> frame = engine.advance(request, work.stop);
     if (frame) return complete(std::move(*frame), work.document);
     std::lock_guard lock(mutex);
     ++abandoned;
@@ -129,7 +141,6 @@ void Session::Impl::complete(FrameOutput frame, std::shared_ptr<const Document> 
         states.record(shown, shownDocument);
         resting = shown.rests();
         guarded = false;
-        expectedFrameMs = shown.frameMs;
     }
     publish();
 }
@@ -186,14 +197,14 @@ void Session::Impl::saveView(const Work& work) {
     } else {
         frame = std::make_shared<FrameOutput>(shown);
     }
-    std::string state;
+    StateLog recorded;
     {
         std::lock_guard lock(mutex);
-        state = states.json(choice.json());
+        recorded = states;
     }
-    runAside([this, save, choice, frame, state, from = shownDocument](std::stop_token) {
+    runAside([this, save, choice, frame, recorded, from = shownDocument](std::stop_token) {
         try {
-            exportView(save.path, *frame, *from, choice, state);
+            exportView(save.path, *frame, *from, choice, recorded.json(choice.json()));
             log.info("Saved " + save.path.string());
         } catch (const std::exception& error) {
             log.error(error.what());

@@ -48,6 +48,7 @@ TEST(FrameEngine, ChangesAreTold) {
     EXPECT_TRUE(changesAfter("camera.eye", "0,2,500").cut) << "a teleport";
     EXPECT_TRUE(changesAfter("time", "3").cut) << "a jump in time";
     EXPECT_FALSE(changesAfter("time", "0.016").cut);
+    EXPECT_TRUE(changesAfter("view.0.module", "none").sampling) << "it prefers another jitter";
     EXPECT_FALSE(changesAfter("view.0.exposure", "3").any());
     EXPECT_FALSE(changesAfter("accumulate.limit", "true").any());
 }
@@ -70,6 +71,7 @@ TEST(FrameEngine, AFrameOfTheSameNumberReplacesTheLast) {
 TEST(FrameEngine, AReplacedFrameKeepsItsSamplesWhereOnlyAModuleChanged) {
     Engine e;
     Document document(tinyScene());
+    document.setText("camera.jitter", "per-pixel");
     e.draw(document, 0);
     const FrameOutput before = e.draw(document, 1);
     document.setText("view.0.module", "none");

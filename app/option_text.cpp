@@ -1,0 +1,68 @@
+#include "app/option_text.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "base/error.h"
+
+namespace lumi {
+
+int64_t parseWhole(const std::string& text, const std::string& option, const char* expected, int64_t least) {
+    int64_t value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (code != std::errc() || end != text.data() + text.size() || value < least)
+        throwUsage({"not understood", option, expected, '"' + text + '"'});
+    return value;
+}
+
+Extent2 parseSize(const std::string& text, const std::string& option) {
+    const size_t x = text.find('x');
+    const char* expected = "WIDTHxHEIGHT, as 1280x720";
+    if (x == std::string::npos) throwUsage({"not understood", option, expected, '"' + text + '"'});
+    const int64_t width = parseWhole(text.substr(0, x), option, expected, 1);
+    const int64_t height = parseWhole(text.substr(x + 1), option, expected, 1);
+    if (width > 16384 || height > 16384) throwUsage({"too large", option, "at most 16384x16384", '"' + text + '"'});
+    return {static_cast<int>(width), static_cast<int>(height)};
+}
+
+FrameRange parseFrames(const std::string& text) {
+    const char* expected = "a number N, or a range A..B with A < B";
+    const size_t dots = text.find("..");
+    FrameRange range;
+    if (dots == std::string::npos) {
+        range.end = parseWhole(text, "--frames", expected, 1);
+    } else {
+        range.begin = parseWhole(text.substr(0, dots), "--frames", expected, 0);
+        range.end = parseWhole(text.substr(dots + 2), "--frames", expected, 0);
+        if (range.begin >= range.end) throwUsage({"not understood", "--frames", expected, '"' + text + '"'});
+    }
+    if (range.end > 10'000'000) throwUsage({"too many frames", "--frames", "at most 10000000", '"' + text + '"'});
+    return range;
+}
+
+void addValues(const SharedText& text, SceneOptions& scene) {
+    auto& values = scene.values;
+    for (size_t i = 0; i < scene.modules.size() && i < 2; ++i)
+        values.push_back({fmt::format("view.{}.module", i), scene.modules[i], "--module"});
+    if (!text.size.empty()) {
+        const Extent2 size = parseSize(text.size, "--size");
+        values.push_back({"render.width", std::to_string(size.width), "--size"});
+        values.push_back({"render.height", std::to_string(size.height), "--size"});
+    }
+    const TypedValue named[] = {{"render.spp", text.spp, "--spp"},
+                                {"render.fps", text.fps, "--fps"},
+                                {"render.seed", text.seed, "--seed"},
+                                {"camera.select", text.camera, "--camera"},
+                                {"view.0.exposure", text.exposure, "--exposure"}};
+    for (const TypedValue& value : named)
+        if (!value.text.empty()) values.push_back(value);
+    for (const std::string& entry : text.set) {
+        const size_t equals = entry.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throwUsage({"not understood", "--set", "ID=VALUE", '"' + entry + '"'});
+        values.push_back({entry.substr(0, equals), entry.substr(equals + 1), "--set"});
+    }
+}
+
+}  // namespace lumi

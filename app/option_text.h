@@ -1,0 +1,22 @@
+#pragma once
+#include "app/cli.h"
+
+namespace lumi {
+
+/// What the user typed for the options that are shared by several commands.
+struct SharedText {
+    std::vector<std::string> set;
+    std::string size, camera, exposure, fps, spp, seed;
+};
+
+/// WIDTHxHEIGHT. All of these throw Error(Usage) headed by the option's name.
+Extent2 parseSize(const std::string& text, const std::string& option);
+/// N (frames 0..N-1) or A..B.
+FrameRange parseFrames(const std::string& text);
+/// A whole number that is at least `least`.
+int64_t parseWhole(const std::string& text, const std::string& option, const char* expected, int64_t least);
+/// Options that are parameters become values, in the order in which they take effect: those with a name of their own
+/// first, then --set as typed.
+void addValues(const SharedText& text, SceneOptions& scene);
+
+}  // namespace lumi

@@ -1,0 +1,115 @@
+"""Runs the program in a folder of its own and looks at what it leaves. The binary is the first argument."""
+import json
+import os
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+
+PROGRAM = os.path.abspath(sys.argv[1])
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+TINY = ["--size", "24x16"]
+
+
+class Result:
+    def __init__(self, process):
+        self.code = process.returncode
+        self.out = process.stdout.decode()
+        self.err = process.stderr.decode()
+
+    @property
+    def json(self):
+        return json.loads(self.out)
+
+
+class CommandTest(unittest.TestCase):
+    """Each test has an empty current folder, self.folder."""
+
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def run_program(self, *arguments, timeout=300, **environment):
+        env = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        env.update(environment)
+        return Result(subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, env=env, capture_output=True,
+                                     timeout=timeout))
+
+    def good(self, *arguments, **environment):
+        result = self.run_program(*arguments, **environment)
+        self.assertEqual(result.code, 0, result.err)
+        return result
+
+    def refused(self, code, parts, *arguments, **environment):
+        """One clear line on standard error, nothing on standard output."""
+        result = self.run_program(*arguments, **environment)
+        self.assertEqual(result.code, code, f"{arguments}: {result.err or result.out}")
+        self.assertEqual(result.out, "")
+        lines = result.err.strip().splitlines()
+        self.assertEqual(len(lines), 1, result.err)
+        self.assertTrue(lines[0].startswith("lumiscope: "), lines[0])
+        for part in parts:
+            self.assertIn(part, lines[0])
+        return lines[0]
+
+    def bytes(self, name):
+        return (self.folder / name).read_bytes()
+
+    def files(self):
+        return sorted(path.name for path in self.folder.iterdir())
+
+
+def png_text(data, keyword):
+    """The value of a tEXt, zTXt or iTXt chunk."""
+    position = 8
+    while position < len(data):
+        length, kind = struct.unpack(">I4s", data[position:position + 8])
+        body = data[position + 8:position + 8 + length]
+        position += 12 + length
+        key, _, rest = body.partition(b"\0")
+        if key.decode("latin-1") != keyword:
+            continue
+        if kind == b"tEXt":
+            return rest.decode("latin-1")
+        if kind == b"zTXt":
+            return zlib.decompress(rest[1:]).decode("latin-1")
+        if kind == b"iTXt":
+            compressed = rest[0]
+            text = rest[2:].split(b"\0", 2)[2]
+            return (zlib.decompress(text) if compressed else text).decode()
+    return None
+
+
+def exr_header(data):
+    """Attributes of a single-part OpenEXR file, by name; channels as {name: type}."""
+    position = 8
+    attributes = {}
+    while data[position] != 0:
+        name, position = read_string(data, position)
+        kind, position = read_string(data, position)
+        size = struct.unpack("<i", data[position:position + 4])[0]
+        attributes[name] = data[position + 4:position + 4 + size]
+        position += 4 + size
+    channels, position, table = {}, 0, attributes["channels"]
+    while table[position] != 0:
+        name, position = read_string(table, position)
+        channels[name] = ("uint", "half", "float")[struct.unpack("<i", table[position:position + 4])[0]]
+        position += 16
+    attributes["channels"] = channels
+    return attributes
+
+
+def read_string(data, position):
+    end = data.index(b"\0", position)
+    return data[position:end].decode(), end + 1
+
+
+def main():
+    del sys.argv[1]
+    unittest.main(verbosity=1)

@@ -1,0 +1,91 @@
+"""list and info: tables for people, JSON for tools."""
+from lumiscope import CommandTest, main
+
+SCENES = ["cornell", "room", "atrium", "still-life", "parade"]
+SIGNALS = """noisy emission albedo specularAlbedo directDiffuse indirectDiffuse directSpecular indirectSpecular direct
+indirect visibility sampleVariance normal geometricNormal objectNormal depth inverseDepth depthGradient position motion
+roughness objectId materialId surface""".split()
+
+
+class List(CommandTest):
+    def test_scenes(self):
+        scenes = self.good("list", "scenes", "--json").json
+        self.assertEqual([scene["id"] for scene in scenes][:len(SCENES)], SCENES)
+        table = self.good("list", "scenes").out
+        for scene in scenes:
+            self.assertTrue(scene["title"])
+            self.assertIn(scene["title"], table)
+
+    def test_modules(self):
+        modules = {m["id"]: m for m in self.good("list", "modules", "--json").json}
+        self.assertLessEqual({"none", "accumulate"}, set(modules))
+        self.assertTrue(all(set(m) >= {"id", "title", "paper"} for m in modules.values()))
+        self.assertIn("Progressive mean", self.good("list", "modules").out)
+
+    def test_buffers(self):
+        buffers = self.good("list", "buffers", "--json").json
+        ids = [b["id"] for b in buffers]
+        self.assertEqual(ids[:len(SIGNALS)], SIGNALS)
+        self.assertIn("accumulate-standardError", ids)
+        taps = self.good("list", "buffers", "--module", "accumulate", "--json").json
+        self.assertEqual([b["id"] for b in taps], ["accumulate-sampleCount", "accumulate-standardError"])
+        self.assertTrue(all(b["module"] == "accumulate" for b in taps))
+
+    def test_parameters(self):
+        parameters = {p["id"]: p for p in self.good("list", "parameters", "--json").json}
+        for name in ("render.width", "render.spp", "path.max-depth", "sampler.kind", "camera.eye", "camera.jitter", "time",
+                     "environment.rotate-deg", "material.<name>.roughness", "light.<name>.power", "light.<name>.radius",
+                     "view.0.exposure", "view.layout", "accumulate.max-samples", "none.component"):
+            self.assertIn(name, parameters)
+        depth = parameters["path.max-depth"]
+        self.assertEqual((depth["type"], depth["min"], depth["default"]), ("integer", 1, 6))
+        self.assertEqual(parameters["sampler.kind"]["options"], ["sobol", "halton", "independent"])
+        for parameter in parameters.values():
+            self.assertTrue(parameter["help"], parameter["id"])
+            self.assertRegex(parameter["id"], r"^[a-z0-9@.<>-]+$")
+        only = self.good("list", "parameters", "--module", "accumulate@b", "--json").json
+        self.assertTrue(only and all(p["id"].startswith("accumulate@b.") for p in only))
+        self.assertIn("accumulate.limit", self.good("list", "parameters", "--module", "accumulate").out)
+
+    def test_every_listed_value_is_accepted(self):
+        for parameter in self.good("list", "parameters", "--module", "accumulate", "--json").json:
+            value = str(parameter["default"]).lower()
+            self.good("render", "cornell", "--size", "4x4", "--quiet", "--out", "a.exr", "--set", f"{parameter['id']}={value}")
+
+
+class Info(CommandTest):
+    def test_json(self):
+        info = self.good("info", "cornell", "--json").json
+        self.assertEqual(info["title"], "Cornell box")
+        self.assertGreater(info["triangles"], 10)
+        self.assertGreater(info["instances"], 1)
+        self.assertIn("white", [m["id"] for m in info["materials"]])
+        self.assertEqual([light["id"] for light in info["lights"]], ["lamp"])
+        self.assertEqual(info["cameras"][0]["id"], "main")
+        self.assertEqual(len(info["bounds"]["min"]), 3)
+        self.assertGreater(info["memory_bytes"], 0)
+        self.assertEqual(info["warnings"], [])
+        self.assertFalse(info["animated"])
+        self.assertTrue(all(key == key.lower() for key in info))
+
+    def test_text(self):
+        text = self.good("info", "cornell").out
+        for part in ("Cornell box", "triangles", "lamp", "main", "bounds", "memory"):
+            self.assertIn(part, text)
+
+    def test_every_built_in_scene_loads_without_a_warning(self):
+        for scene in self.good("list", "scenes", "--json").json:
+            info = self.good("info", scene["id"], "--json").json
+            self.assertEqual(info["warnings"], [], scene["id"])
+            self.assertGreater(info["triangles"], 0)
+
+    def test_warnings_are_told(self):
+        (self.folder / "dark.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        info = self.good("info", "dark.obj", "--json").json
+        self.assertTrue(any("light" in warning or "sky" in warning for warning in info["warnings"]), info["warnings"])
+        self.assertEqual(info["cameras"][0]["id"], "default")
+        self.assertIn(info["warnings"][0], self.good("info", "dark.obj").out)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,81 @@
+"""Exit codes and messages: what is refused, how, and with which number."""
+from lumiscope import CommandTest, SOURCE, TINY, main
+
+
+class Usage(CommandTest):
+    def test_help_says_what_there_is(self):
+        text = self.good("--help").out
+        for part in ("render", "info", "list", "view", "cornell", "Exit codes", "lumiscope render"):
+            self.assertIn(part, text)
+        for command in ("render", "info", "list", "view"):
+            text = self.good(command, "--help").out
+            self.assertIn("lumiscope " + command, text)
+            self.assertIn("Example", text)
+        self.assertIn("accumulate", self.good("render", "--help").out)
+        self.assertRegex(self.good("--version").out, r"^lumiscope \d+\.\d+\.\d+\n$")
+
+    def test_unknown_things_name_the_nearest(self):
+        self.refused(2, ["--sppp", "--spp"], "render", "cornell", "--sppp", "3")
+        self.refused(2, ['"cornel"', '"cornell"'], "render", "cornel")
+        self.refused(2, ['"acumulate"', '"accumulate"', "--module"], "render", "cornell", "--module", "acumulate")
+        self.refused(2, ['"path.max-dept"', '"path.max-depth"', "--set"], "render", "cornell", "--set", "path.max-dept=2")
+        self.refused(2, ['"albdo"', '"albedo"', "--buffers"], "render", "cornell", "--buffers", "albdo")
+        self.refused(2, ["main", "inside", "--camera"], "render", "cornell", "--camera", "nowhere")
+        self.refused(2, ["scenes", "parameters"], "list", "things")
+        self.refused(2, ["v3", "--isa"], "render", "cornell", "--isa", "v9")
+        self.assertEqual(self.files(), [])
+
+    def test_commands_to_come_are_not_offered(self):
+        for command in ("reference", "compare", "study", "bench", "merge"):
+            self.assertNotIn("  " + command, self.good("--help").out)
+            self.assertEqual(self.run_program(command, "x").code, 2)
+
+    def test_bad_values_are_refused_before_anything_is_rendered(self):
+        for arguments in (["--size", "12"], ["--size", "0x4"], ["--size", "axb"], ["--frames", "0"], ["--frames", "5..3"],
+                          ["--frames", "3..3"], ["--frames", "x"], ["--spp", "0"], ["--spp", "many"], ["--fps", "0"],
+                          ["--set", "path.max-depth"], ["--set", "=3"], ["--set", "path.max-depth=99"],
+                          ["--threads", "0"], ["--memory-limit", "lots"], ["--out", "a.jpg"], ["--out", "noextension"],
+                          ["--out", "a%s.png"], ["--out", "a%04d.mp4"], ["--progress", "sometimes"],
+                          ["--module", "none", "--module", "accumulate"]):
+            self.refused(2, [], "render", "cornell", *arguments)
+        self.refused(2, ["SCENE"], "render")
+        self.refused(2, ["--replay"], "render", "--replay", "a.png", "--spp", "3")
+        self.refused(2, ["--offscreen"], "view", "cornell", "--out", "x")
+        self.refused(2, ["--out"], "view", "cornell", "--offscreen")
+        self.assertEqual(self.files(), [])
+
+    def test_without_a_display_the_window_says_so(self):
+        for arguments in ([], ["cornell"]):
+            self.refused(4, ["display"], *arguments)
+
+    def test_bad_scenes(self):
+        good = (SOURCE / "scenes/cornell.json").read_text()
+        cases = {
+            "truncated.json": (good[:len(good) // 2], ["truncated.json:"]),
+            "unknown-key.json": (good.replace('"materials"', '"materals"'), ["unknown-key.json:", '"materials"']),
+            "empty.json": ("", ["empty.json"]),
+            "array.json": ("[1, 2]", ["array.json"]),
+            "broken.gltf": ('{"asset": {"version": "2.0"}, "scenes": [{"nodes": [7]}]}', ["broken.gltf"]),
+            "broken.glb": ("glTF\x02\x00\x00\x00\xff\xff", ["broken.glb"]),
+            "broken.obj": ("v 0 0 0\nf 1 2 99\n", ["broken.obj"]),
+        }
+        for name, (text, parts) in cases.items():
+            (self.folder / name).write_text(text)
+            for command in ("render", "info"):
+                self.refused(3, parts, command, name)
+        self.refused(3, ["missing.gltf", "no such file"], "render", "missing.gltf")
+        (self.folder / "folder.json").mkdir()
+        self.refused(3, ["folder.json"], "info", "folder.json")
+
+    def test_the_memory_limit(self):
+        line = self.refused(5, ["memory limit", "MiB"], "render", "cornell", "--memory-limit", "20M", "--size", "4096x4096")
+        self.assertIn("4096x4096", line)
+        self.assertEqual(self.files(), [])
+
+    def test_a_folder_that_cannot_be_written(self):
+        (self.folder / "file").write_text("")
+        self.refused(2, ["file/a.png"], "render", "cornell", *TINY, "--quiet", "--out", "file/a.png")
+
+
+if __name__ == "__main__":
+    main()
