@@ -75,6 +75,10 @@ public:
                   .unit = "deg",
                   .help = "Half the angle through which the legs swing",
                   .redo = Redo::Build});
+        v.colour("back", back_, {.label = "Back", .help = "Colour of back and legs", .redo = Redo::Build});
+        v.colour("belly", belly_, {.label = "Belly", .help = "Colour of the underside", .redo = Redo::Build});
+        v.colour("stripes", stripes_, {.label = "Stripes", .help = "Colour of stripes and feet", .redo = Redo::Build});
+        v.colour("crest", crest_, {.label = "Crest", .help = "Colour of the plates", .redo = Redo::Build});
         describeSeed(v, seed_);
     }
 
@@ -253,12 +257,11 @@ private:
     /// Darker, striped back and a pale belly.
     Vec3 skinColour(const Vec3& p, const Vec3& n, float s) const {
         const auto seed = static_cast<uint32_t>(seed_);
-        const Vec3 back(0.10f, 0.36f, 0.34f), belly(0.80f, 0.70f, 0.44f), stripe(0.03f, 0.14f, 0.20f);
         const float up = n.y + 0.25f * valueNoise(p * 9.0f, seed);
         const float band = glm::smoothstep(0.1f, 0.5f, std::sin(s * 75 + 1.5f * valueNoise(p * 7.0f, seed + 1))) *
                            glm::smoothstep(0.1f, 0.6f, up);
-        const Vec3 base = glm::mix(belly, back, glm::smoothstep(-0.55f, 0.05f, up));
-        return glm::mix(base, stripe, 0.85f * band);
+        const Vec3 base = glm::mix(belly_, back_, glm::smoothstep(-0.55f, 0.05f, up));
+        return glm::mix(base, stripes_, 0.85f * band);
     }
 
     void addLeg(Mesh& mesh, std::vector<Influences>& influences, int leg) const {
@@ -287,16 +290,14 @@ private:
             return w;
         };
         for (size_t i = 0; i < limb.positions.size(); ++i)
-            limb.colours.push_back(Vec4(glm::mix(Vec3(0.10f, 0.36f, 0.34f), Vec3(0.04f, 0.17f, 0.21f),
-                                                 glm::smoothstep(0.30f, 0.08f, limb.positions[i].y)),
-                                        1));
+            limb.colours.push_back(
+                Vec4(glm::mix(back_, stripes_, glm::smoothstep(0.30f, 0.08f, limb.positions[i].y)), 1));
         addSkinned(mesh, influences, limb, kBack, Vec3(1), weigh);
         // A broad foot with three claws.
         Mesh foot = cushionBox({0.088f, 0.05f, 0.12f}, 0.024f, 0.004f, 3, 2);
         Mesh placedFoot;
         append(placedFoot, foot, 0, placed({ankle.x, 0.027f, ankle.z + 0.022f}));
-        addSkinned(mesh, influences, placedFoot, kBack, {0.04f, 0.17f, 0.21f},
-                   [&](const Vec3&) { return only(joint + 2); });
+        addSkinned(mesh, influences, placedFoot, kBack, stripes_, [&](const Vec3&) { return only(joint + 2); });
         for (const float side : {-1.0f, 0.0f, 1.0f}) {
             const Vec3 base(ankle.x + side * 0.027f, 0.02f, ankle.z + 0.074f);
             addSkinned(
@@ -352,8 +353,7 @@ private:
             basis[3] = Vec4(path[at] + up * (radius * 0.92f), 1);
             Mesh placedPlate;
             append(placedPlate, plate, 0, basis);
-            addSkinned(mesh, influences, placedPlate, kBack, {0.80f, 0.28f, 0.06f},
-                       [s](const Vec3&) { return alongSpine(s); });
+            addSkinned(mesh, influences, placedPlate, kBack, crest_, [s](const Vec3&) { return alongSpine(s); });
         }
     }
 
@@ -372,6 +372,8 @@ private:
     }
 
     float length_ = 1.4f, period_ = 1, phase_ = 0, stride_ = 22;
+    Vec3 back_{0.10f, 0.36f, 0.34f}, belly_{0.80f, 0.70f, 0.44f}, stripes_{0.03f, 0.14f, 0.20f},
+        crest_{0.80f, 0.28f, 0.06f};
     int seed_ = 1;
 };
 

@@ -73,8 +73,8 @@ private:
                                     {r - t, h * 0.97f},
                                     {r * 0.82f, h * 0.8f, true},
                                     {0, h * 0.8f}},
-                                   3),
-                     56),
+                                   2),
+                     40),
                kPot);
         const auto salt = static_cast<uint32_t>(dice.below(1000));
         append(mesh,

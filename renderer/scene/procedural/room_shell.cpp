@@ -1,5 +1,3 @@
-#include <array>
-
 #include "scene/procedural/generators.h"
 
 namespace lumi {
@@ -14,8 +12,8 @@ Mesh patch(const Vec3& corner, const Vec3& right, const Vec3& up) {
         1, 1, [&](float u, float v) { return corner + right * u + up * v; }, scale);
 }
 
-/// A room seen from inside: floor at y = 0, centred on the origin. The wall at -X has a window opening with a reveal
-/// as deep as the wall; skirting boards and a cornice run around.
+/// A room seen from inside: floor at y = 0, centred on the origin. The walls at -X and +Z have window openings with
+/// reveals as deep as the walls; skirting boards and a cornice run around. The wall at -Z is the accent.
 class RoomShell final : public Procedural {
 public:
     void describe(ParameterVisitor& v) override {
@@ -23,10 +21,14 @@ public:
         describeLength(v, "depth", depth_, "Depth", 1, 50, "Along Z, inside");
         describeLength(v, "height", height_, "Height", 1.5, 20, "From floor to ceiling");
         describeLength(v, "wall", wall_, "Wall", 0.05, 1, "Thickness of the walls");
-        describeLength(v, "window-width", windowWidth_, "Window width", 0.2, 20, "Of the opening, along Z");
-        describeLength(v, "window-height", windowHeight_, "Window height", 0.2, 10, "Of the opening");
-        describeLength(v, "window-sill", sill_, "Window sill", 0, 5, "Height of the opening's lower edge");
-        describeLength(v, "window-z", windowZ_, "Window place", -25, 25, "Z of the opening's middle");
+        describeLength(v, "window-width", side_.width, "Window width", 0.2, 20, "Of the opening at -X, along Z");
+        describeLength(v, "window-height", side_.height, "Window height", 0.2, 10, "Of the opening at -X");
+        describeLength(v, "window-sill", side_.sill, "Window sill", 0, 5, "Height of that opening's lower edge");
+        describeLength(v, "window-z", windowZ_, "Window place", -25, 25, "Z of that opening's middle");
+        describeLength(v, "front-width", front_.width, "Front width", 0.2, 20, "Of the opening at +Z, along X");
+        describeLength(v, "front-height", front_.height, "Front height", 0.2, 10, "Of the opening at +Z");
+        describeLength(v, "front-sill", front_.sill, "Front sill", 0, 5, "Height of that opening's lower edge");
+        describeLength(v, "front-x", frontX_, "Front place", -25, 25, "X of that opening's middle");
     }
 
     ProceduralResult build() const override {
@@ -34,11 +36,14 @@ public:
         const float x = width_ / 2, z = depth_ / 2, h = height_, w = wall_;
         append(mesh, patch({-x, 0, z}, {width_, 0, 0}, {0, 0, -depth_}), kFloor);
         append(mesh, patch({-x, h, -z}, {width_, 0, 0}, {0, 0, depth_}), kCeiling);
-        append(mesh, patch({-x, 0, -z}, {width_, 0, 0}, {0, h, 0}), kAccent);
-        append(mesh, patch({x, 0, z}, {-width_, 0, 0}, {0, h, 0}), kWalls);
-        append(mesh, patch({x, 0, -z}, {0, 0, depth_}, {0, h, 0}), kWalls);
-        addWindowWall(mesh, x, z, h, w);
-        addOutside(mesh, x, z, h, w);
+        append(mesh, patch({-x - w, h + w, z + w}, {width_ + 2 * w, 0, 0}, {0, 0, -depth_ - 2 * w}), kWalls);
+        append(mesh, patch({-x - w, -w, -z - w}, {width_ + 2 * w, 0, 0}, {0, 0, depth_ + 2 * w}), kWalls);
+        Opening side = side_, front = front_, none;
+        side.at = -windowZ_, front.at = -frontX_, none.width = 0;
+        append(mesh, wall(width_, none, kAccent), 0, placed({0, 0, -z}));
+        append(mesh, wall(depth_, side, kWalls), 0, placed({-x, 0, 0}, {0, 90, 0}));
+        append(mesh, wall(width_, front, kWalls), 0, placed({0, 0, z}, {0, 180, 0}));
+        append(mesh, wall(depth_, none, kWalls), 0, placed({x, 0, 0}, {0, -90, 0}));
         addMouldings(mesh, x, z, h);
         return onePart(
             std::move(mesh),
@@ -48,34 +53,39 @@ public:
     }
 
 private:
-    void addWindowWall(Mesh& mesh, float x, float z, float h, float w) const {
-        const float z0 = windowZ_ - windowWidth_ / 2, z1 = windowZ_ + windowWidth_ / 2;
-        const float y0 = sill_, y1 = sill_ + windowHeight_;
-        // Four panels around the opening, facing +X.
-        append(mesh, patch({-x, 0, z}, {0, 0, -depth_}, {0, y0, 0}), kWalls);
-        append(mesh, patch({-x, y1, z}, {0, 0, -depth_}, {0, h - y1, 0}), kWalls);
-        append(mesh, patch({-x, y0, z}, {0, 0, z1 - z}, {0, y1 - y0, 0}), kWalls);
-        append(mesh, patch({-x, y0, z0}, {0, 0, -z - z0}, {0, y1 - y0, 0}), kWalls);
-        // The reveal: bottom, top and both sides of the opening, through the wall.
-        append(mesh, patch({-x - w, y0, z1}, {w, 0, 0}, {0, 0, z0 - z1}), kTrim);
-        append(mesh, patch({-x - w, y1, z0}, {w, 0, 0}, {0, 0, z1 - z0}), kWalls);
-        append(mesh, patch({-x - w, y0, z0}, {w, 0, 0}, {0, y1 - y0, 0}), kWalls);
-        append(mesh, patch({-x, y0, z1}, {-w, 0, 0}, {0, y1 - y0, 0}), kWalls);
-    }
+    /// A window opening in a wall; no width means none.
+    struct Opening {
+        float width = 2.2f, height = 1.7f, sill = 0.75f;
+        float at = 0;  ///< of its middle along the wall, to the right seen from inside
+    };
 
-    /// Plain outer faces, so that light from outside comes in through the opening only.
-    void addOutside(Mesh& mesh, float x, float z, float h, float w) const {
-        const float X = x + w, Z = z + w, H = h + w, y0 = sill_, y1 = sill_ + windowHeight_;
-        const float z0 = windowZ_ - windowWidth_ / 2, z1 = windowZ_ + windowWidth_ / 2;
-        append(mesh, patch({-X, H, Z}, {2 * X, 0, 0}, {0, 0, -2 * Z}), kWalls);
-        append(mesh, patch({-X, -w, -Z}, {2 * X, 0, 0}, {0, 0, 2 * Z}), kWalls);
-        append(mesh, patch({X, -w, -Z}, {-2 * X, 0, 0}, {0, H + w, 0}), kWalls);
-        append(mesh, patch({-X, -w, Z}, {2 * X, 0, 0}, {0, H + w, 0}), kWalls);
-        append(mesh, patch({X, -w, Z}, {0, 0, -2 * Z}, {0, H + w, 0}), kWalls);
-        append(mesh, patch({-X, -w, -Z}, {0, 0, 2 * Z}, {0, y0 + w, 0}), kWalls);
-        append(mesh, patch({-X, y1, -Z}, {0, 0, 2 * Z}, {0, H - y1, 0}), kWalls);
-        append(mesh, patch({-X, y0, -Z}, {0, 0, z0 + Z}, {0, y1 - y0, 0}), kWalls);
-        append(mesh, patch({-X, y0, z1}, {0, 0, Z - z1}, {0, y1 - y0, 0}), kWalls);
+    /// A wall of two faces, `length` along X about the origin, its inner face on z = 0 towards +Z; the outer one
+    /// reaches around the corners. Light comes in through the opening only.
+    Mesh wall(float length, const Opening& opening, uint32_t slot) const {
+        Mesh mesh;
+        const float x = length / 2, X = x + wall_, h = height_, w = wall_;
+        if (opening.width <= 0) {
+            append(mesh, patch({-x, 0, 0}, {2 * x, 0, 0}, {0, h, 0}), slot);
+            append(mesh, patch({X, -w, -w}, {-2 * X, 0, 0}, {0, h + 2 * w, 0}), kWalls);
+            return mesh;
+        }
+        const float x0 = opening.at - opening.width / 2, x1 = opening.at + opening.width / 2;
+        const float y0 = opening.sill, y1 = opening.sill + opening.height;
+        // Four panels around the opening on each face.
+        append(mesh, patch({-x, 0, 0}, {2 * x, 0, 0}, {0, y0, 0}), slot);
+        append(mesh, patch({-x, y1, 0}, {2 * x, 0, 0}, {0, h - y1, 0}), slot);
+        append(mesh, patch({-x, y0, 0}, {x0 + x, 0, 0}, {0, y1 - y0, 0}), slot);
+        append(mesh, patch({x1, y0, 0}, {x - x1, 0, 0}, {0, y1 - y0, 0}), slot);
+        append(mesh, patch({X, -w, -w}, {-2 * X, 0, 0}, {0, y0 + w, 0}), kWalls);
+        append(mesh, patch({X, y1, -w}, {-2 * X, 0, 0}, {0, h + w - y1, 0}), kWalls);
+        append(mesh, patch({x0, y0, -w}, {-X - x0, 0, 0}, {0, y1 - y0, 0}), kWalls);
+        append(mesh, patch({X, y0, -w}, {x1 - X, 0, 0}, {0, y1 - y0, 0}), kWalls);
+        // The reveal through the wall: bottom, top and both sides.
+        append(mesh, patch({x0, y0, 0}, {x1 - x0, 0, 0}, {0, 0, -w}), kTrim);
+        append(mesh, patch({x0, y1, -w}, {x1 - x0, 0, 0}, {0, 0, w}), slot);
+        append(mesh, patch({x0, y0, 0}, {0, 0, -w}, {0, y1 - y0, 0}), slot);
+        append(mesh, patch({x1, y0, -w}, {0, 0, w}, {0, y1 - y0, 0}), slot);
+        return mesh;
     }
 
     void addMouldings(Mesh& mesh, float x, float z, float h) const {
@@ -92,8 +102,8 @@ private:
         append(mesh, moulding(cornice, ceilingPath, inward, {0, 1, 0}), kTrim);
     }
 
-    float width_ = 6, depth_ = 5, height_ = 2.8f, wall_ = 0.25f;
-    float windowWidth_ = 2.2f, windowHeight_ = 1.7f, sill_ = 0.75f, windowZ_ = 0;
+    float width_ = 6, depth_ = 5, height_ = 2.8f, wall_ = 0.25f, windowZ_ = 0, frontX_ = 0;
+    Opening side_, front_;
 };
 
 }  // namespace
