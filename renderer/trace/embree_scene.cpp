@@ -269,8 +269,6 @@ RTCGeometry EmbreeScene::newBody(const Plan& plan) const {
     return geometry;
 }
 
-void EmbreeScene::buildScene(RTCScene scene) const { rtcCommitScene(scene); }
-
 namespace {
 
 void attachSingle(RTCScene scene, RTCGeometry geometry) {
@@ -312,7 +310,6 @@ void EmbreeScene::makeAttachment(const PosedScene& posed, uint32_t index) {
             attachSingle(a.own, newTriangles(a.deformed->positions.data(), a.deformed->positions.size(), *plan.mesh,
                                              nullptr, plan.filtered));
         }
-        buildScene(a.own);
     }
     a.geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(a.geometry, target);
@@ -339,11 +336,16 @@ void EmbreeScene::rebuild(const PosedScene& posed, std::vector<Plan> plans) {
         m.scene = newScene();
         attachSingle(m.scene, newTriangles(m.mesh->positions.data(), m.mesh->positions.size(), *m.mesh, nullptr,
                                            m.filtered));
-        buildScene(m.scene);
     });
     parallelFor(static_cast<int64_t>(plans_.size()), [&](int64_t i) { makeAttachment(posed, static_cast<uint32_t>(i)); });
-    for (uint32_t i = 0; i < attachments_.size(); ++i)
-        if (attachments_[i].geometry) rtcAttachGeometryByID(top_, attachments_[i].geometry, i);
+    // Each build is parallel inside; builds inside our own loops wait for each other without end.
+    for (const MeshScene& m : meshScenes_) rtcCommitScene(m.scene);
+    for (uint32_t i = 0; i < attachments_.size(); ++i) {
+        if (attachments_[i].own) rtcCommitScene(attachments_[i].own);
+        if (!attachments_[i].geometry) continue;
+        rtcCommitGeometry(attachments_[i].geometry);
+        rtcAttachGeometryByID(top_, attachments_[i].geometry, i);
+    }
     rtcCommitScene(top_);
     throwIfFailed("building the scene for ray tracing");
 }
@@ -353,7 +355,7 @@ bool EmbreeScene::update(const PosedScene& posed, std::vector<Plan> plans) {
     for (size_t i = 0; i < plans.size(); ++i)
         if (!plans[i].sameAttachment(plans_[i])) return false;
 
-    std::atomic<bool> changed{false};
+    std::vector<uint8_t> changed(plans.size(), 0), rebuilt(plans.size(), 0);
     parallelFor(static_cast<int64_t>(plans.size()), [&](int64_t index) {
         const auto i = static_cast<size_t>(index);
         const Plan& plan = plans[i];
@@ -363,20 +365,25 @@ bool EmbreeScene::update(const PosedScene& posed, std::vector<Plan> plans) {
         const bool carried = (plan.mode == Mode::Instanced || plan.mode == Mode::Deforming) &&
                              plan.worldFromObject != plans_[i].worldFromObject;
         if (!reshaped && !deformed && !carried) return;
-        changed = true;
+        changed[i] = 1;
         if (reshaped || deformed) {
+            rebuilt[i] = 1;
             rtcDetachGeometry(a.own, 0);
             if (deformed) a.deformed = posed.instances[i].deformed;
             attachSingle(a.own, reshaped ? newBody(plan)
                                          : newTriangles(a.deformed->positions.data(), a.deformed->positions.size(),
                                                         *plan.mesh, nullptr, plan.filtered));
-            buildScene(a.own);
-            rtcCommitGeometry(a.geometry);
         }
         if (carried) setTransform(a.geometry, plan.worldFromObject);
     });
     plans_ = std::move(plans);
-    if (changed) rtcCommitScene(top_);
+    bool any = false;
+    for (size_t i = 0; i < changed.size(); ++i) {
+        if (rebuilt[i]) rtcCommitScene(attachments_[i].own);
+        if (rebuilt[i]) rtcCommitGeometry(attachments_[i].geometry);
+        any |= changed[i] != 0;
+    }
+    if (any) rtcCommitScene(top_);
     throwIfFailed("updating the scene for ray tracing");
     return true;
 }

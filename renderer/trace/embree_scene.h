@@ -47,7 +47,6 @@ private:
     std::vector<Plan> makePlans(const PosedScene& posed) const;
     void rebuild(const PosedScene& posed, std::vector<Plan> plans);
     bool update(const PosedScene& posed, std::vector<Plan> plans);
-    void buildScene(RTCScene scene) const;
     RTCScene newScene() const;
     RTCGeometry newTriangles(const Vec3* positions, size_t vertexCount, const Mesh& mesh, const Mat4* transform,
                              bool filtered) const;

@@ -30,11 +30,12 @@ struct Packet<16> {
     static constexpr auto occluded = &rtcOccluded16;
 };
 
-RTCIntersectContext makeContext(Coherence coherence) {
+RTCIntersectContext makeContext() {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = coherence == Coherence::Coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                                                     : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    // Never RTC_INTERSECT_CONTEXT_FLAG_COHERENT: Embree 3.13.5's frustum traversal of 16-wide occlusion packets does not
+    // return for some packets of shadow rays towards a sky over robust instances.
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     return context;
 }
 
@@ -101,7 +102,7 @@ void occludedPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<u
 
 void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits, Coherence coherence) {
     assert(hits.size() >= rays.size());
-    RTCIntersectContext context = makeContext(coherence);
+    RTCIntersectContext context = makeContext();
     const int width = coherence == Coherence::Coherent ? scene.packetWidth() : 1;
     if (width == 16) return intersectPackets<16>(scene.handle(), rays, hits, context);
     if (width == 8) return intersectPackets<8>(scene.handle(), rays, hits, context);
@@ -121,7 +122,7 @@ void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std
 void occludedRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked,
                   Coherence coherence) {
     assert(blocked.size() >= rays.size());
-    RTCIntersectContext context = makeContext(coherence);
+    RTCIntersectContext context = makeContext();
     const int width = coherence == Coherence::Coherent ? scene.packetWidth() : 1;
     if (width == 16) return occludedPackets<16>(scene.handle(), rays, blocked, context);
     if (width == 8) return occludedPackets<8>(scene.handle(), rays, blocked, context);

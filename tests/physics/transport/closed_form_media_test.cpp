@@ -66,14 +66,15 @@ Material glass(float roughness) {
 }
 
 TEST(Furnace, GlassSphereIsInvisible) {
-    for (const float roughness : {0.0f, 0.3f}) {
+    // The rough boundary's compensation is good to 1% a passage, and there are two.
+    for (const auto& [roughness, tolerance] : {std::pair(0.0f, 0.003), std::pair(0.3f, 0.02)}) {
         TinyScene tiny;
         tiny.add(facetedSphere(1, 48), glass(roughness));
         tiny.scene.environment.constant = Vec3(1);
         Tracer tracer;
         tracer.bind(tiny.pose());
         const Estimate e = radianceAlong(tracer, Vec3(0.3f, 0.2f, 4), Vec3(-0.02f, 0.03f, -1), 20000, plainPaths(64));
-        EXPECT_NEAR(e.mean, 1, 0.01 + 3 * e.standardError) << "roughness " << roughness;
+        EXPECT_NEAR(e.mean, 1, tolerance + 3 * e.standardError) << "roughness " << roughness;
     }
 }
 

@@ -25,7 +25,7 @@ TinyScene boxScene() {
 }
 
 const Camera kView = lookFrom(Vec3(2, 2, 4), Vec3(0, 0.4f, 0), 40);
-constexpr Extent2 kExtent{32, 24};
+constexpr Extent2 kExtent{24, 18};
 
 Image noisy(Tracer& tracer, int spp, const PathSettings& path, uint32_t seed) {
     Signals signals;
@@ -43,7 +43,7 @@ TEST(Convergence, ErrorFallsAsOneOverRootN) {
     Tracer tracer;
     tracer.bind(boxScene().pose());
     const PathSettings path = plainPaths(2);
-    const Image reference = noisy(tracer, 4096, path, 99);
+    const Image reference = noisy(tracer, 2048, path, 99);
     // Least squares of log error over log n.
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
     const int counts[] = {1, 4, 16, 64};
@@ -59,7 +59,7 @@ TEST(Convergence, SobolBeatsIndependentNumbers) {
     Tracer tracer;
     tracer.bind(boxScene().pose());
     PathSettings path = plainPaths(1);
-    const Image reference = noisy(tracer, 4096, path, 99);
+    const Image reference = noisy(tracer, 2048, path, 99);
     const double independent = rmse(noisy(tracer, 64, path, 3), reference);
     path.sampler = SamplerKind::Sobol;
     EXPECT_LT(rmse(noisy(tracer, 64, path, 3), reference), 0.75 * independent);

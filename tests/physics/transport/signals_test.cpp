@@ -115,7 +115,7 @@ TEST_F(SignalsContract, GeometryIsConsistent) {
                                      {std::bit_cast<float>(id.at(2, x, y)), std::bit_cast<float>(id.at(3, x, y))}, 0};
             EXPECT_LT(glm::distance(tracer_.position(point), vec(Signal::Position)), 1e-5f);
         }
-    EXPECT_GT(surfaces, 800);
+    EXPECT_GT(surfaces, 600);
 }
 
 TEST_F(SignalsContract, DepthGradientIsThatOfTheTangentPlane) {
