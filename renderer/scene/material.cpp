@@ -32,6 +32,13 @@ void Material::describe(ParameterVisitor& v) {
              {.label = "Specular", .help = "Weight of the dielectric reflection (KHR_materials_specular).", .redo = Redo::Samples});
     v.colour("specular-color", specularColor,
              {.label = "Specular colour", .max = 25, .help = "Tints the dielectric reflection at normal incidence."});
+    describeTransmission(v);
+    describeLayers(v);
+    v.toggle("double-sided", doubleSided,
+             {.label = "Double-sided", .help = "Both faces emit; shading is two-sided in any case.", .redo = Redo::Samples});
+}
+
+void Material::describeTransmission(ParameterVisitor& v) {
     v.number("transmission", transmission,
              {.label = "Transmission", .help = "Share of the diffuse base that transmits instead.", .redo = Redo::Samples});
     v.when(transmission > 0, [&] {
@@ -45,8 +52,46 @@ void Material::describe(ParameterVisitor& v) {
                       .help = "Path length in the medium that gives the attenuation colour; the largest absorbs nothing.",
                       .redo = Redo::Samples});
     });
-    v.toggle("double-sided", doubleSided,
-             {.label = "Double-sided", .help = "Both faces emit; shading is two-sided in any case.", .redo = Redo::Samples});
+}
+
+void Material::describeLayers(ParameterVisitor& v) {
+    v.number("clearcoat", clearcoat,
+             {.label = "Clearcoat", .help = "Share of the surface under a clear varnish.", .redo = Redo::Samples});
+    v.when(clearcoat > 0, [&] {
+        v.number("clearcoat-roughness", clearcoatRoughness,
+                 {.label = "Clearcoat roughness", .help = "Perceptual roughness of the varnish.", .redo = Redo::Samples});
+        v.number("clearcoat-normal-scale", clearcoatNormalScale,
+                 {.label = "Clearcoat normal map", .min = 0, .max = 4, .help = "Strength of the varnish's own normal map.",
+                  .redo = Redo::Samples});
+    });
+    v.colour("sheen-color", sheenColor,
+             {.label = "Sheen colour", .max = 1, .help = "Reflectance of fibres at grazing angles; black is none."});
+    v.when(hasSheen(), [&] {
+        v.number("sheen-roughness", sheenRoughness,
+                 {.label = "Sheen roughness", .help = "0 shines at the rim alone, 1 everywhere.", .redo = Redo::Samples});
+    });
+    v.number("anisotropy", anisotropy,
+             {.label = "Anisotropy", .help = "Stretches highlights along one direction.", .redo = Redo::Samples});
+    v.when(anisotropy > 0, [&] {
+        float degreesNow = degrees(anisotropyRotation);
+        const float before = degreesNow;
+        v.number("anisotropy-rotate-deg", degreesNow,
+                 {.label = "Anisotropy direction", .min = -360, .max = 360, .unit = "deg",
+                  .help = "Of the stretch, counter-clockwise from the tangent.", .redo = Redo::Samples});
+        if (degreesNow != before) anisotropyRotation = radians(degreesNow);
+    });
+    v.number("iridescence", iridescence,
+             {.label = "Iridescence", .help = "Share of the surface under a thin film.", .redo = Redo::Samples});
+    v.when(iridescence > 0, [&] {
+        v.number("iridescence-ior", iridescenceIor,
+                 {.label = "Film index", .min = 1, .max = 3, .help = "Index of refraction of the film.", .redo = Redo::Samples});
+        v.number("iridescence-thickness-min", iridescenceThicknessMin,
+                 {.label = "Least film thickness", .max = 10000, .unit = "nm",
+                  .help = "Where the thickness texture is 0.", .redo = Redo::Samples});
+        v.number("iridescence-thickness-max", iridescenceThicknessMax,
+                 {.label = "Film thickness", .max = 10000, .unit = "nm",
+                  .help = "Where the thickness texture is 1, and without one.", .redo = Redo::Samples});
+    });
 }
 
 }  // namespace lumi

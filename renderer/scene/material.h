@@ -42,11 +42,39 @@ struct Material {
     Vec3 attenuationColor{1};
     float attenuationDistance = kInfinity;  ///< metres in which light takes on attenuationColor
 
+    float clearcoat = 0;  ///< KHR_materials_clearcoat: share of the surface under a varnish of index 1.5
+    Texture clearcoatTexture;  ///< R
+    float clearcoatRoughness = 0;
+    Texture clearcoatRoughnessTexture;  ///< G
+    Texture clearcoatNormalTexture;     ///< without one the varnish follows the smooth normal, not normalTexture
+    float clearcoatNormalScale = 1;
+
+    Vec3 sheenColor{0};  ///< KHR_materials_sheen: reflectance of fibres at grazing angles
+    Texture sheenColorTexture;  ///< RGB (sRGB)
+    float sheenRoughness = 0;
+    Texture sheenRoughnessTexture;  ///< A
+
+    float anisotropy = 0;  ///< KHR_materials_anisotropy: how far the highlight is stretched along its direction
+    float anisotropyRotation = 0;  ///< radians, counter-clockwise from the tangent
+    Texture anisotropyTexture;  ///< RG direction in tangent space, -1 to 1; B multiplies anisotropy
+
+    float iridescence = 0;  ///< KHR_materials_iridescence: share of the surface under a thin film
+    Texture iridescenceTexture;  ///< R
+    float iridescenceIor = 1.3f;
+    float iridescenceThicknessMin = 100, iridescenceThicknessMax = 400;  ///< nm; without a texture the latter counts
+    Texture iridescenceThicknessTexture;  ///< G goes from the least to the most
+
     bool emits() const { return !isBlack(emission); }
     bool isSolid() const { return thickness > 0; }
+    bool hasSheen() const { return !isBlack(sheenColor); }
+    bool isLayered() const { return clearcoat > 0 || hasSheen() || anisotropy > 0 || iridescence > 0; }
     bool hasAlpha() const { return alphaMode != AlphaMode::Opaque; }
     /// Everything a user can move: base-color, metallic, roughness, emission, ior, ...
     void describe(ParameterVisitor&);
+
+private:
+    void describeTransmission(ParameterVisitor&);
+    void describeLayers(ParameterVisitor&);
 };
 
 }  // namespace lumi

@@ -20,6 +20,15 @@ const std::vector<TextureKey> kTextureKeys{
     {"specular-texture", false, &Material::specularTexture, "A weighs the dielectric reflection."},
     {"specular-color-texture", true, &Material::specularColorTexture, "RGB (sRGB); multiplies specular-color."},
     {"transmission-texture", false, &Material::transmissionTexture, "R; multiplies transmission."},
+    {"clearcoat-texture", false, &Material::clearcoatTexture, "R; multiplies clearcoat."},
+    {"clearcoat-roughness-texture", false, &Material::clearcoatRoughnessTexture, "G; multiplies clearcoat-roughness."},
+    {"clearcoat-normal-texture", false, &Material::clearcoatNormalTexture, "Tangent-space normals of the clearcoat."},
+    {"sheen-color-texture", true, &Material::sheenColorTexture, "RGB (sRGB); multiplies sheen-color."},
+    {"sheen-roughness-texture", false, &Material::sheenRoughnessTexture, "A; multiplies sheen-roughness."},
+    {"anisotropy-texture", false, &Material::anisotropyTexture, "RG direction, B multiplies anisotropy."},
+    {"iridescence-texture", false, &Material::iridescenceTexture, "R; multiplies iridescence."},
+    {"iridescence-thickness-texture", false, &Material::iridescenceThicknessTexture,
+     "G; from the least to the full film thickness."},
 };
 
 void TexturePlacement::describe(ParameterVisitor& v) {

@@ -7,59 +7,18 @@
 
 #include "trace/fresnel.h"
 #include "trace/ggx.h"
+#include "trace/visible_normals.h"
 
 namespace lumi {
 namespace {
-
-// Rows crowd towards the smooth end, three to one.
-float roughnessOf(int row) {
-    const float x = static_cast<float>(row) / (kAlbedoRows - 1);
-    return kTabledRoughness + (1 - kTabledRoughness) * 0.5f * (x + x * x);
-}
 
 Vec3 directionAt(float cosTheta) {
     cosTheta = std::max(cosTheta, 1e-4f);
     return {std::sqrt(std::max(0.0f, 1 - cosTheta * cosTheta)), 0, cosTheta};
 }
 
-/// The Fibonacci lattice of `Count` points; the next smaller Fibonacci number is `Step`. Heights crowd at the far end,
-/// where reflected light grazes and integrands fall steeply; `weight` makes up for it.
-template <int Count, int Step>
-struct Lattice {
-    struct Point {
-        float height, cosAzimuth, sinAzimuth, weight;
-    };
-    std::array<Point, Count> points;
-
-    Lattice() {
-        for (int i = 0; i < Count; ++i) {
-            const float t = 1 - (static_cast<float>(i) + 0.5f) / Count;
-            const float azimuth = 2 * kPi * static_cast<float>(i * Step % Count) / Count;
-            points[static_cast<size_t>(i)] = {1 - t * t, std::cos(azimuth), std::sin(azimuth), 2 * t / Count};
-        }
-    }
-};
-using CoarseLattice = Lattice<233, 144>;
-using FineLattice = Lattice<610, 377>;
-
-/// Mean of value(h) over the facet normals that `wo` sees, by a lattice in the square that
-/// Ggx::sampleVisibleNormal() maps: integrands have kinks along curves, and no two points of a lattice share a height.
-template <class Points, class Value>
-Vec2 meanOverVisibleNormals(const Ggx& ggx, const Vec3& wo, const Value& value) {
-    static const Points lattice;
-    const Vec3 stretched = ggx.stretched(wo);
-    Vec2 sum(0);
-    for (const auto& point : lattice.points)
-        sum += point.weight * value(ggx.visibleNormal(stretched, point.height, point.cosAzimuth, point.sinAzimuth));
-    return sum;
-}
-
-/// Masking of the far direction given the near one: what reflection by facet h keeps.
-float reflectedShare(const Ggx& ggx, const Vec3& wo, float lambdaO, const Vec3& h) {
-    const Vec3 wi = 2 * glm::dot(wo, h) * h - wo;
-    if (wi.z <= 0) return 0;
-    return (1 + lambdaO) * maskingShadowing(lambdaO, ggx.lambda(wi));
-}
+using CoarseLattice = FibonacciLattice<233, 144>;
+using FineLattice = FibonacciLattice<610, 377>;
 
 template <size_t Columns>
 Vec2 bilinear(const std::array<std::array<Vec2, Columns>, kAlbedoRows>& table, RoughnessRow at, float column) {
@@ -74,10 +33,16 @@ Vec2 bilinear(const std::array<std::array<Vec2, Columns>, kAlbedoRows>& table, R
 
 }  // namespace
 
-RoughnessRow::RoughnessRow(float roughness) {
+// Rows crowd towards the smooth end, three to one.
+float RoughnessRow::roughnessOf(int row, int rows) {
+    const float x = static_cast<float>(row) / static_cast<float>(rows - 1);
+    return kTabledRoughness + (1 - kTabledRoughness) * 0.5f * (x + x * x);
+}
+
+RoughnessRow::RoughnessRow(float roughness, int rows) {
     const float above = std::max(0.0f, (roughness - kTabledRoughness) / (1 - kTabledRoughness));
-    const float position = (std::sqrt(0.25f + 2 * above) - 0.5f) * (kAlbedoRows - 1);
-    row = std::clamp(static_cast<int>(position), 0, kAlbedoRows - 2);
+    const float position = (std::sqrt(0.25f + 2 * above) - 0.5f) * static_cast<float>(rows - 1);
+    row = std::clamp(static_cast<int>(position), 0, rows - 2);
     fraction = std::clamp(position - static_cast<float>(row), 0.0f, 1.0f);
 }
 
@@ -88,7 +53,7 @@ const SchlickAlbedo& SchlickAlbedo::get() {
 
 SchlickAlbedo::SchlickAlbedo() {
     for (int row = 0; row < kAlbedoRows; ++row) {
-        const Ggx ggx{sqr(roughnessOf(row))};
+        const Ggx ggx{sqr(RoughnessRow::roughnessOf(row))};
         auto& entries = directional_[static_cast<size_t>(row)];
         for (int column = 0; column < kColumns; ++column) {
             // Columns are even in the root of the cosine: grazing angles change fastest.
@@ -132,7 +97,7 @@ DielectricAlbedo::DielectricAlbedo(float eta) {
         invBeyond_ = 1 / (eta * eta);
     }
     for (int row = 0; row < kAlbedoRows; ++row) {
-        const Ggx ggx{sqr(roughnessOf(row))};
+        const Ggx ggx{sqr(RoughnessRow::roughnessOf(row))};
         for (int column = 0; column < kColumns; ++column) {
             const Vec3 wo = directionAt(cosineAt(static_cast<float>(column)));
             const float lambdaO = ggx.lambda(wo);

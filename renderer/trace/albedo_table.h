@@ -17,7 +17,9 @@ struct RoughnessRow {
     int row = 0;
     float fraction = 0;
     RoughnessRow() = default;
-    explicit RoughnessRow(float roughness);
+    explicit RoughnessRow(float roughness, int rows = kAlbedoRows);
+    /// Roughness that lies on row `row` of `rows`.
+    static float roughnessOf(int row, int rows = kAlbedoRows);
 };
 
 /// GGX reflection under Schlick's Fresnel term: albedo = F0 * x + F90 * y of the returned pair.

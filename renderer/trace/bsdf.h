@@ -1,72 +1,35 @@
 #pragma once
-#include "trace/albedo_table.h"
-#include "trace/ggx.h"
-#include "trace/observer.h"
+#include <optional>
+
+#include "trace/base_bsdf.h"
+#include "trace/clearcoat.h"
+#include "trace/sheen.h"
 
 namespace lumi {
 
-/// A material at a point, textures looked up: what the lobes are built from. Values out of range are clamped.
-struct BsdfInputs {
-    Vec3 baseColor{1};
-    float metallic = 0;
-    float roughness = 0.5f;
-    float ior = 1.5f;          ///< of the material against its outside
-    float specular = 1;
-    Vec3 specularColor{1};
-    float transmission = 0;    ///< share of the dielectric base that transmits instead of scattering diffusely
-    bool solid = false;        ///< refracts (closed volume); else a thin wall: transmission goes straight on
-    bool entering = true;      ///< wo is on the outside of a solid
-};
-
-/// f times cosine of one direction, apart by lobe, and the density over all lobes.
-struct BsdfValue {
-    Vec3 diffuse{0};      ///< f |cos(wi)| of the diffuse lobe
-    Vec3 specular{0};     ///< and of reflection and transmission lobes together
-    float pdf = 0;        ///< per solid angle, of sample() over all non-delta lobes
-};
-
-struct BsdfSample {
-    Vec3 wi{0};           ///< local frame
-    Vec3 weight{0};       ///< f |cos| / pdf summed over the lobes that can make wi (the one lobe for delta)
-    float pdf = 0;        ///< over all non-delta lobes; 0 if delta
-    bool delta = false;
-    Lobe lobe = Lobe::None;  ///< the lobe that was drawn; None: absorbed
-};
-
 /// The scattering function at one point for one outgoing direction, in the local frame (z is the shading normal on
-/// wo's side, wo.z > 0). Lobes:
-///   diffuse: Lambert under the specular layer, weighted by what that layer lets through,
-///     f = rho/pi (1 - E(wo)) (1 - E(wi)) / (1 - Eavg)  [Kelemen & Szirmay-Kalos 2001],
-///     rho = baseColor (1-metallic)(1-transmission);
-///   specular reflection: GGX with visible normals [Heitz 2018], Schlick Fresnel from ior, specular, specularColor and
-///     (metals) baseColor; exact dielectric Fresnel where the base transmits;
-///   specular transmission: rough dielectric [Walter 2007] for solids, mirrored-reflection lobe for thin walls.
-/// Roughness below kDeltaRoughness is a perfect mirror or window: a delta lobe.
-///
-/// What is transported is radiance over the square of the refractive index, which refraction leaves as it is: no
-/// factor eta^2 on the way in, none on the way out. In air that is radiance; a closed piece of glass in a furnace gives
-/// 1 and albedos stay in [0,1] on both sides. Light emitted inside a solid is taken in the same measure.
-/// A thin wall tints by baseColor, each face of a solid by its root: what is seen through either has the colour once.
+/// wo's side, wo.z > 0): a base (see BaseBsdf) under sheen under clearcoat. Each layer shows what it reflects towards
+/// wo, and what lies below keeps the rest, whatever wi: a white furnace stays white, but a layered surface is not
+/// reciprocal, though each of its lobes is. Layers cover the outside only: glass seen from inside has none.
 class Bsdf {
 public:
-    static constexpr float kDeltaRoughness = kTabledRoughness;
+    static constexpr float kDeltaRoughness = BaseBsdf::kDeltaRoughness;
 
     Bsdf() = default;
     Bsdf(const BsdfInputs& inputs, const Vec3& wo);
 
     BsdfValue evaluate(const Vec3& wi) const;
-    /// `uLobe` chooses diffuse or specular by the luminance of their albedos (but each at least kMinLobeShare), and
-    /// then reflection or transmission by what the facet drawn does.
+    /// `uLobe` chooses the layer by the luminance of its albedo (but each at least kMinLayerShare), and then the lobe.
     BsdfSample sample(float uLobe, Vec2 u) const;
 
-    /// Directional albedo towards wo of one lobe, and of all specular lobes together. In [0,1].
+    /// Directional albedo towards wo of one lobe, and of all but the diffuse one together. In [0,1].
     Vec3 albedo(Lobe lobe) const;
-    Vec3 specularAlbedo() const { return albedo(Lobe::SpecularReflection) + albedo(Lobe::SpecularTransmission); }
+    Vec3 specularAlbedo() const;
     /// One lobe alone, f |cos|, for tests and for modules that replace a term. 0 for delta lobes.
     Vec3 evaluate(const Vec3& wi, Lobe lobe) const;
     /// True if every lobe is a delta: next-event estimation cannot contribute.
     bool isDelta() const;
-    /// Chance that sample() draws this lobe, lost samples included: exact for deltas and the diffuse lobe.
+    /// Chance that sample() draws this lobe, lost samples included: exact for deltas, layers and the diffuse lobe.
     float probability(Lobe lobe) const;
 
     /// Takes lobes away, as if they were black: what a path at a depth limit may no longer use. Albedos go with them.
@@ -74,63 +37,28 @@ public:
 
     /// Makes the albedo tables that materials of this ior need (about 20 ms the first time), so that no path waits.
     /// `transmits`: also those of dielectric boundaries. Any thread.
-    static void prepare(float ior, bool transmits);
+    static void prepare(float ior, bool transmits) { BaseBsdf::prepare(ior, transmits); }
+    /// And those of layers.
+    static void prepareLayers(bool sheen, bool anisotropy);
 
 private:
-    static constexpr float kMinLobeShare = 0.05f;
-    enum Slot { kDiffuse, kReflection, kTransmission, kSlots };
-    /// f |cos| and the density of the sampling that makes the lobe (diffuse, or both specular ones together).
-    struct LobeValue {
-        Vec3 f{0};
-        float pdf = 0;
-    };
-    struct Facet {
-        Vec3 reflected{0};           ///< Fresnel term of the reflection lobe
-        float through = 0;           ///< share that a dielectric boundary lets through
-        float reflectionChance = 1;  ///< of a specular sample at this facet
-    };
+    static constexpr float kMinLayerShare = 0.05f;
 
-    void setDiffuse(const Vec3& rho, float f0, float f90);
-    void setSpecular(bool inside);
+    void addLayers(const LayerInputs& layers, bool inside, const Vec3& wo);
     void chooseProbabilities();
-    float reflectionChance(const Vec3& reflected, float through) const;
-    Vec2 schlickAlbedo(float cosTheta) const;
-    Facet facetAt(float cosTheta) const;
+    /// Into the frame whose x is the direction of anisotropy, and back.
+    Vec3 turned(const Vec3& w) const { return {turn_.x * w.x + turn_.y * w.y, turn_.x * w.y - turn_.y * w.x, w.z}; }
+    Vec3 turnedBack(const Vec3& w) const { return {turn_.x * w.x - turn_.y * w.y, turn_.x * w.y + turn_.y * w.x, w.z}; }
+    BsdfSample combined(const Vec3& wi, Lobe lobe) const;
+    BsdfSample sampleCoat(Vec2 u) const;
 
-    LobeValue diffuse(const Vec3& wi) const;
-    LobeValue reflection(const Vec3& wi, const Vec3& h) const;
-    LobeValue transmissionThin(const Vec3& mirrored, const Vec3& h) const;
-    LobeValue transmissionSolid(const Vec3& wi, const Vec3& h) const;
-    LobeValue transmission(const Vec3& wi) const;
-
-    BsdfSample sampleDiffuse(Vec2 u) const;
-    BsdfSample sampleSpecular(float choice, Vec2 u) const;
-    BsdfSample upperSample(const Vec3& wi, const Vec3& h, Lobe lobe) const;
-    BsdfSample transmissionSample(const Vec3& h) const;
-    BsdfSample deltaTransmissionSample() const;
-    BsdfSample deltaSample(Slot slot, const Vec3& wi) const;
-
-    Vec3 wo_{0, 0, 1};
-    Ggx ggx_;
-    RoughnessRow row_;           ///< of all albedo tables
-    float lambdaO_ = 0;          ///< ggx_.lambda(wo_)
-    float eta_ = 1;              ///< index of the far side over that of wo's side
-    bool smooth_ = false;        ///< reflection is a delta
-    bool deltaTransmission_ = false;
-    bool solid_ = false;
-    bool hasBoundary_ = false;   ///< the base transmits: the exact Fresnel term takes part
-
-    Vec3 diffuseScale_{0};       ///< rho (1 - E(wo)) / (1 - Eavg) / pi
-    float layerF0_ = 0, layerF90_ = 0;  ///< of the dielectric layer over the diffuse base
-    Vec3 f0_{0};                 ///< Schlick part of reflection, its shares of the material multiplied in
-    float f90_ = 0;
-    Vec3 boundaryTint_{0};       ///< weight of the exact Fresnel term in reflection
-    Vec3 transmissionTint_{0};   ///< and of what it lets through
-
-    Vec3 albedo_[kSlots] = {Vec3(0), Vec3(0), Vec3(0)};
-    float probability_[kSlots] = {0, 0, 0};
-    float specularProbability_ = 0;  ///< of both specular lobes together
-    float reflectedShare_ = 1;       ///< of reflection among them, by albedo
+    BaseBsdf base_;
+    bool layered_ = false;
+    Vec2 turn_{1, 0};
+    std::optional<Clearcoat> coat_;
+    std::optional<Sheen> sheen_;
+    float belowCoat_ = 1, belowSheen_ = 1;  ///< what each lets through; the base keeps both
+    float coatShare_ = 0, sheenShare_ = 0, baseShare_ = 1;  ///< of samples
 };
 
 }  // namespace lumi

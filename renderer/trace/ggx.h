@@ -6,22 +6,29 @@
 
 namespace lumi {
 
-/// Isotropic GGX microfacets with Smith's masking [Walter 2007; Heitz 2014]. Directions are unit, in the frame whose z
-/// is the surface normal; `w` may be on either side, `h` has z > 0.
+/// GGX microfacets with Smith's masking [Walter 2007; Heitz 2014]. Directions are unit, in the frame whose z is the
+/// surface normal; `w` may be on either side, `h` has z > 0. Anisotropic facets are stretched along x.
 struct Ggx {
-    float alpha = 0.25f;  ///< roughness squared, above 0
+    float alpha = 0.25f;  ///< roughness squared, above 0; geometric mean of those along x and y
+    float stretch = 1;    ///< alphaX / alpha = alpha / alphaY
+    float shrink = 1;     ///< 1 / stretch
+
+    static Ggx anisotropic(float alphaX, float alphaY) {
+        return {std::sqrt(alphaX * alphaY), std::sqrt(alphaX / alphaY), std::sqrt(alphaY / alphaX)};
+    }
+    bool isAnisotropic() const { return stretch != 1; }
 
     /// Density of facet normals, per solid angle and projected area.
     float distribution(const Vec3& h) const {
         // Written in sines: 1 - cos^2 would lose the digits that a narrow lobe needs.
         const float a2 = alpha * alpha;
-        const float s = h.x * h.x + h.y * h.y + a2 * h.z * h.z;
+        const float s = sqr(h.x * shrink) + sqr(h.y * stretch) + a2 * h.z * h.z;
         return a2 * kInvPi / (s * s);
     }
 
     float lambda(const Vec3& w) const {
         const float z2 = std::max(w.z * w.z, 1e-12f);
-        return 0.5f * (std::sqrt(1 + alpha * alpha * (w.x * w.x + w.y * w.y) / z2) - 1);
+        return 0.5f * (std::sqrt(1 + alpha * alpha * (sqr(w.x * stretch) + sqr(w.y * shrink)) / z2) - 1);
     }
     /// Share of facets that `w` sees.
     float masking(const Vec3& w) const { return 1 / (1 + lambda(w)); }
@@ -37,13 +44,13 @@ struct Ggx {
     }
 
     /// `w` as seen from the configuration where the roughness is 1.
-    Vec3 stretched(const Vec3& w) const { return glm::normalize(Vec3(alpha * w.x, alpha * w.y, w.z)); }
+    Vec3 stretched(const Vec3& w) const { return glm::normalize(Vec3(alpha * (w.x * stretch), alpha * (w.y * shrink), w.z)); }
     /// The map behind sampleVisibleNormal(), for quadrature: `height` and the azimuth run over the unit square.
     Vec3 visibleNormal(const Vec3& stretchedWo, float height, float cosPhi, float sinPhi) const {
         const float z = (1 - height) * (1 + stretchedWo.z) - stretchedWo.z;
         const float r = std::sqrt(std::max(0.0f, 1 - z * z));
         const Vec3 h = stretchedWo + Vec3(r * cosPhi, r * sinPhi, z);
-        return glm::normalize(Vec3(alpha * h.x, alpha * h.y, std::max(h.z, 1e-7f)));
+        return glm::normalize(Vec3(alpha * (h.x * stretch), alpha * (h.y * shrink), std::max(h.z, 1e-7f)));
     }
 };
 

@@ -86,6 +86,7 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
         else batch.hits.assign(count, RawHit());
         const bool wantsVertices = depth < needs_.vertexDepths;
         if (wantsVertices) batch.vertices.assign(batch.active.size(), PathVertex()), batch.vertexOf.resize(count);
+        if (!given) prefetchSurfaces(scene_.tables, batch.hits);
         batch.pending.clear();
         batch.shadowRays.clear();
         for (uint32_t row = 0; row < batch.active.size(); ++row) {
@@ -152,8 +153,8 @@ void Integrator::shade(PathBatch& batch, uint32_t row, int depth, std::span<cons
         return;
 
     Surface surface = evaluateSurface(scene_.tables, point, wo, path.cone.width);
-    if (settings_.regularize && path.diffuseBefore)
-        surface.inputs.roughness = std::max(surface.inputs.roughness, settings_.regularizeRoughness);
+    surface.inputs.multipleScattering = settings_.multipleScattering;
+    if (settings_.regularize && path.diffuseBefore) surface.inputs.widen(settings_.regularizeRoughness);
     if (vertex) {
         describeVertex(path, surface, wo, depth, *vertex);
         vertex->distance = distance;

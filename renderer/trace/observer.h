@@ -8,7 +8,7 @@ namespace lumi {
 
 class PosedScene;
 
-enum class Lobe : uint8_t { None, Diffuse, SpecularReflection, SpecularTransmission };
+enum class Lobe : uint8_t { None, Diffuse, SpecularReflection, SpecularTransmission, Clearcoat, Sheen };
 inline bool isSpecular(Lobe lobe) { return lobe != Lobe::None && lobe != Lobe::Diffuse; }
 
 /// One vertex of one path, as the integrator made it. World space.

@@ -25,6 +25,7 @@ MaterialRecord makeMaterial(const Material& m) {
     mark(m.specularColorTexture, MaterialRecord::kSpecularColor);
     mark(m.transmissionTexture, MaterialRecord::kTransmission);
     r.solid = m.isSolid();
+    r.layered = m.isLayered();
     r.doubleSided = m.doubleSided;
     r.emits = m.emits();
     r.metallic = m.metallic, r.roughness = m.roughness, r.ior = m.ior, r.specular = m.specular;

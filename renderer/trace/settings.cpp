@@ -33,6 +33,11 @@ void PathSettings::describe(ParameterVisitor& v) {
                   {.label = "Clamp at", .min = 0.01, .max = 1000, .scale = Scale::Log, .unit = "W/(m^2 sr)",
                   .help = "Largest channel a contribution may have.", .redo = Redo::Samples});
     });
+    v.toggle("path.multiple-scattering", multipleScattering,
+             {.label = "Multiple scattering",
+              .help = "Gives rough reflections what facets scatter more than once [Kulla & Conty 2017]; without it rough "
+                      "metals darken.",
+              .redo = Redo::Samples});
     v.toggle("path.regularize", regularize,
              {.label = "Regularize", .help = "Widens specular lobes after a diffuse scattering [Kaplanyan 2013].",
               .redo = Redo::Samples});

@@ -17,6 +17,7 @@ struct PathSettings {
     bool clamp = false;           ///< limit each path contribution after the first surface
     float clampRadiance = 10;     ///< W/(m^2 sr)
     DirectStrategy strategy = DirectStrategy::Mis;
+    bool multipleScattering = true;  ///< between the facets of rough reflecting surfaces [Kulla & Conty 2017]
     bool regularize = false;      ///< path-space regularization [Kaplanyan 2013]: widen lobes after a diffuse vertex
     float regularizeRoughness = 0.3f;
     SamplerKind sampler = SamplerKind::Sobol;

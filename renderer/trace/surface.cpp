@@ -59,6 +59,13 @@ TangentFrame tangentFrame(const InstanceRecord& r, uint32_t primitive, const UVe
     return {alongU, -alongV};
 }
 
+/// A direction of the tangent plane in the plane of `local`; its x without a tangent frame.
+Vec2 alongSurface(const Frame& local, const TangentFrame& frame, Vec2 direction) {
+    const Vec3 world = unitOr(frame.tangent, Vec3(0)) * direction.x + unitOr(frame.bitangent, Vec3(0)) * direction.y;
+    const Vec2 along(local.toLocal(world));
+    return glm::length(along) > 1e-6f ? along : Vec2(1, 0);
+}
+
 Surface bodySurface(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo) {
     const InstanceRecord& r = tables.instances[point.instance];
     const LightShape& shape = tables.bodies[static_cast<size_t>(r.body)].shape;
@@ -79,6 +86,23 @@ Surface bodySurface(const SceneTables& tables, const SurfacePoint& point, const 
 }
 
 }  // namespace
+
+void prefetchSurfaces(const SceneTables& tables, std::span<const RawHit> hits) {
+    const auto usable = [&](const RawHit& hit) { return hit.valid() && tables.instances[hit.instance].body < 0; };
+    for (const RawHit& hit : hits)
+        if (usable(hit)) __builtin_prefetch(&tables.instances[hit.instance].triangles[hit.primitive]);
+    for (const RawHit& hit : hits) {
+        if (!usable(hit)) continue;
+        const InstanceRecord& r = tables.instances[hit.instance];
+        const UVec3 t = r.triangles[hit.primitive];
+        for (int c = 0; c < 3; ++c) {
+            __builtin_prefetch(&r.positions[t[c]]);
+            if (r.normals) __builtin_prefetch(&r.normals[t[c]]);
+            if (r.uv[0]) __builtin_prefetch(&r.uv[0][t[c]]);
+            if (r.tangents) __builtin_prefetch(&r.tangents[t[c]]);
+        }
+    }
+}
 
 SurfacePoint surfacePoint(const SceneTables& tables, const RawHit& hit, const Vec3& hitPosition, float time) {
     SurfacePoint point{hit.instance, hit.primitive, {hit.u, hit.v}, time};
@@ -130,18 +154,38 @@ Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, co
     const MaterialRecord& material = tables.materials[s.material];
     const float cosine = std::abs(glm::dot(s.geometricNormal, wo));
     const float footprint = width / std::sqrt(std::max(cosine, 0.04f));
-    evaluateMaterial(material, r, t, b, footprint, glm::length(glm::cross(edge1, edge2)), s);
+    const float twiceArea = glm::length(glm::cross(edge1, edge2));
+    evaluateMaterial(material, r, t, b, footprint, twiceArea, s);
 
-    if (material.textures & MaterialRecord::kNormal) {
-        const TangentFrame frame =
-            tangentFrame(r, point.primitive, t, b, objectNormal, edge1, edge2, smooth, material.source->normalTexture);
-        smooth = mappedNormal(material, r, t, b, footprint, glm::length(glm::cross(edge1, edge2)), frame.tangent,
-                              frame.bitangent, smooth);
+    const Vec3 unmapped = smooth;
+    TextureLookups lookup(r, t, b, footprint, twiceArea);
+    const auto frameOf = [&](const Texture& texture) {
+        return tangentFrame(r, point.primitive, t, b, objectNormal, edge1, edge2, unmapped, texture);
+    };
+    const auto mapped = [&](const Texture& texture, float scale) {
+        const TangentFrame frame = frameOf(texture);
+        return mappedNormal(texture, scale, lookup, frame.tangent, frame.bitangent, unmapped);
+    };
+    if (material.textures & MaterialRecord::kNormal) smooth = mapped(material.source->normalTexture, material.source->normalScale);
+    const auto seen = [&](const Vec3& front) {
+        const Vec3 shading = s.frontFace ? front : -front;
+        // A normal that points away from the geometric one altogether is a modelling slip.
+        return consistentNormal(glm::dot(shading, s.geometricNormal) < 0 ? -shading : shading, s.geometricNormal, wo);
+    };
+    s.normal = seen(smooth);
+    if (material.layered) {
+        const Frame local(s.normal);
+        LayerInputs& layers = s.inputs.layers;
+        if (layers.clearcoat > 0) {
+            const Texture& own = material.source->clearcoatNormalTexture;
+            layers.clearcoatNormal =
+                local.toLocal(seen(own ? mapped(own, material.source->clearcoatNormalScale) : unmapped));
+        }
+        if (layers.anisotropy > 0) {
+            const TangentFrame frame = frameOf(material.source->anisotropyTexture);
+            layers.anisotropyDirection = alongSurface(local, frame, layers.anisotropyDirection);
+        }
     }
-    Vec3 shading = s.frontFace ? smooth : -smooth;
-    // A normal that points away from the geometric one altogether is a modelling slip.
-    if (glm::dot(shading, s.geometricNormal) < 0) shading = -shading;
-    s.normal = consistentNormal(shading, s.geometricNormal, wo);
     s.inputs.entering = s.frontFace;
     return s;
 }

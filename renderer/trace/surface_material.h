@@ -1,5 +1,6 @@
 #pragma once
 #include "trace/surface.h"
+#include "trace/texture_lookups.h"
 
 namespace lumi {
 
@@ -14,8 +15,11 @@ Vec3 emissionAt(const MaterialRecord& material, const InstanceRecord& instance, 
                 Vec2 barycentrics);
 
 /// The normal map's normal, unit, world space, on the side of `normal`; `normal` itself without a tangent frame.
-Vec3 mappedNormal(const MaterialRecord& material, const InstanceRecord& instance, const UVec3& triangle,
-                  Vec2 barycentrics, float footprint, float twiceArea, const Vec3& tangent, const Vec3& bitangent,
-                  const Vec3& normal);
+Vec3 mappedNormal(const Texture& texture, float scale, TextureLookups& lookup, const Vec3& tangent,
+                  const Vec3& bitangent, const Vec3& normal);
+
+/// Clearcoat, sheen, anisotropy and iridescence: factors times textures. The direction of anisotropy is left in the
+/// tangent frame (bitangent up in glTF's sense); the coat's normal is left alone.
+void evaluateLayers(const Material& source, TextureLookups& lookup, BsdfInputs& inputs);
 
 }  // namespace lumi

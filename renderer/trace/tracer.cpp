@@ -87,6 +87,7 @@ void Tracer::bind(std::shared_ptr<const PosedScene> posed) {
     parallelFor(static_cast<int64_t>(scene.tables.materials.size()), [&](int64_t i) {
         const MaterialRecord& material = scene.tables.materials[static_cast<size_t>(i)];
         Bsdf::prepare(material.ior, material.transmission > 0);
+        if (material.layered) Bsdf::prepareLayers(material.source->hasSheen(), material.source->anisotropy > 0);
     });
 }
 

@@ -21,9 +21,13 @@ constexpr uint64_t kMaxFileBytes = (uint64_t(1) << 32) - 1;  ///< GLB lengths ar
 /// Extensions that the loader understands, in the order of the glTF registry.
 constexpr std::array kSupportedExtensions = {"EXT_mesh_gpu_instancing",
                                              "KHR_lights_punctual",
+                                             "KHR_materials_anisotropy",
+                                             "KHR_materials_clearcoat",
                                              "KHR_materials_emissive_strength",
                                              "KHR_materials_ior",
+                                             "KHR_materials_iridescence",
                                              "KHR_materials_pbrSpecularGlossiness",
+                                             "KHR_materials_sheen",
                                              "KHR_materials_specular",
                                              "KHR_materials_transmission",
                                              "KHR_materials_unlit",

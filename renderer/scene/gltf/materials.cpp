@@ -27,6 +27,10 @@ public:
         if (const auto* extension = find("KHR_materials_specular")) readSpecular(*extension);
         if (const auto* extension = find("KHR_materials_transmission")) readTransmission(*extension);
         if (const auto* extension = find("KHR_materials_volume")) readVolume(*extension);
+        if (const auto* extension = find("KHR_materials_clearcoat")) readClearcoat(*extension);
+        if (const auto* extension = find("KHR_materials_sheen")) readSheen(*extension);
+        if (const auto* extension = find("KHR_materials_anisotropy")) readAnisotropy(*extension);
+        if (const auto* extension = find("KHR_materials_iridescence")) readIridescence(*extension);
         if (const auto* extension = find("KHR_materials_emissive_strength"))
             material_.emission *= std::max(0.0f, numberOf(*extension, "emissiveStrength", 1));
         if (find("KHR_materials_unlit")) makeUnlit();
@@ -97,6 +101,43 @@ private:
         material_.attenuationColor = clampedColour(vec3Of(extension, "attenuationColor", Vec3(1)));
         const float distance = numberOf(extension, "attenuationDistance", kInfinity);
         material_.attenuationDistance = distance > 0 ? distance : kInfinity;
+    }
+
+    void readClearcoat(const tinygltf::Value& extension) {
+        material_.clearcoat = unit(numberOf(extension, "clearcoatFactor", 0), 0);
+        material_.clearcoatTexture = inner(extension, "clearcoatTexture", TextureUse::Data);
+        material_.clearcoatRoughness = unit(numberOf(extension, "clearcoatRoughnessFactor", 0), 0);
+        material_.clearcoatRoughnessTexture = inner(extension, "clearcoatRoughnessTexture", TextureUse::Data);
+        material_.clearcoatNormalTexture = inner(extension, "clearcoatNormalTexture", TextureUse::Normal);
+        if (material_.clearcoatNormalTexture)
+            material_.clearcoatNormalScale =
+                std::clamp(numberOf(extension.Get("clearcoatNormalTexture"), "scale", 1), -16.0f, 16.0f);
+    }
+
+    void readSheen(const tinygltf::Value& extension) {
+        material_.sheenColor = clampedColour(vec3Of(extension, "sheenColorFactor", Vec3(0)));
+        material_.sheenColorTexture = inner(extension, "sheenColorTexture", TextureUse::Colour);
+        material_.sheenRoughness = unit(numberOf(extension, "sheenRoughnessFactor", 0), 0);
+        material_.sheenRoughnessTexture = inner(extension, "sheenRoughnessTexture", TextureUse::Data);
+    }
+
+    void readAnisotropy(const tinygltf::Value& extension) {
+        material_.anisotropy = unit(numberOf(extension, "anisotropyStrength", 0), 0);
+        const float rotation = numberOf(extension, "anisotropyRotation", 0);
+        material_.anisotropyRotation = std::isfinite(rotation) ? std::remainder(rotation, 2 * kPi) : 0;
+        material_.anisotropyTexture = inner(extension, "anisotropyTexture", TextureUse::Data);
+    }
+
+    void readIridescence(const tinygltf::Value& extension) {
+        material_.iridescence = unit(numberOf(extension, "iridescenceFactor", 0), 0);
+        material_.iridescenceTexture = inner(extension, "iridescenceTexture", TextureUse::Data);
+        material_.iridescenceIor = std::clamp(numberOf(extension, "iridescenceIor", 1.3f), 1.0f, 10.0f);
+        constexpr float kMost = 1e5f;
+        material_.iridescenceThicknessMin =
+            std::clamp(numberOf(extension, "iridescenceThicknessMinimum", 100), 0.0f, kMost);
+        material_.iridescenceThicknessMax =
+            std::clamp(numberOf(extension, "iridescenceThicknessMaximum", 400), 0.0f, kMost);
+        material_.iridescenceThicknessTexture = inner(extension, "iridescenceThicknessTexture", TextureUse::Data);
     }
 
     /// The older specular-glossiness model as a dielectric with a coloured reflection at normal incidence.

@@ -62,8 +62,10 @@ double integratePdf(const Bsdf& bsdf, const Cell& cell, double whole, int depth)
 }
 
 double deltaShare(const Bsdf& bsdf, const BsdfInputs& inputs) {
-    if (inputs.roughness >= Bsdf::kDeltaRoughness) return 0;
-    return bsdf.probability(Lobe::SpecularReflection) + bsdf.probability(Lobe::SpecularTransmission);
+    const bool coat = inputs.layers.clearcoatRoughness < Bsdf::kDeltaRoughness;
+    const float onTop = coat ? bsdf.probability(Lobe::Clearcoat) : 0;
+    if (inputs.roughness >= Bsdf::kDeltaRoughness || inputs.layers.anisotropy > 0) return onTop;
+    return onTop + bsdf.probability(Lobe::SpecularReflection) + bsdf.probability(Lobe::SpecularTransmission);
 }
 
 // Directions fall as pdf says, in cells of the whole sphere; deltas and absorbed samples are two more cells. That the
@@ -74,6 +76,8 @@ TEST(BsdfDistribution, ChiSquare) {
     const auto tests = static_cast<int64_t>(materials().size() * roughnesses.size() * cosines.size());
     const double level = sidakLevel(0.01, tests);
     forEachBsdf(roughnesses, cosines, [&](const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3&, const auto& label) {
+        // A needle of a lobe: too narrow for the cells' quadrature.
+        if (inputs.roughness == 0 && inputs.layers.anisotropy > 0) return;
         std::vector<double> observed(kCells + 2), expected(kCells + 2);
         double integral = 0;
         for (int cell = 0; cell < kCells; ++cell) {
@@ -92,7 +96,7 @@ TEST(BsdfDistribution, ChiSquare) {
         // What is absorbed has no density of its own: what the others leave.
         const double absorbed = 1 - integral - deltaShare(bsdf, inputs);
         EXPECT_GE(absorbed, -2e-4) << label;
-        EXPECT_LE(absorbed, inputs.roughness == 0 ? 2e-4 : 1) << label;
+        EXPECT_LE(absorbed, inputs.roughness == 0 && !inputs.layered ? 2e-4 : 1) << label;
         expected[kCells] = std::max(absorbed, 0.0) * kSamples;
         if (expected[kCells] < 0.1) {
             EXPECT_LE(observed[kCells], 3) << label;
@@ -178,6 +182,10 @@ TEST(BsdfDistribution, Reciprocity) {
                 BsdfInputs inputs = material.inputs;
                 inputs.roughness = roughness;
                 for (const Lobe lobe : {Lobe::Diffuse, Lobe::SpecularReflection}) {
+                    // What layers leave is their albedo towards wo alone, and so is a film's over the diffuse base.
+                    const LayerInputs& layers = inputs.layers;
+                    if (layers.clearcoat > 0 || !isBlack(layers.sheenColor)) continue;
+                    if (layers.iridescence > 0 && lobe == Lobe::Diffuse) continue;
                     const Vec3 ab = Bsdf(inputs, a).evaluate(b, lobe) / b.z;
                     const Vec3 ba = Bsdf(inputs, b).evaluate(a, lobe) / a.z;
                     for (int c = 0; c < 3; ++c)

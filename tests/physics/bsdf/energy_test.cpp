@@ -16,47 +16,54 @@ void expectClose(const Vec3& found, const Vec3& expected, const std::string& lab
 }
 
 const char* nameOf(Lobe lobe) {
-    return lobe == Lobe::Diffuse ? "diffuse" : lobe == Lobe::SpecularReflection ? "reflection" : "transmission";
+    constexpr const char* kNames[] = {"none", "diffuse", "reflection", "transmission", "clearcoat", "sheen"};
+    return kNames[static_cast<int>(lobe)];
 }
 
 // In a furnace of radiance 1 a lobe shows its directional albedo; all together never more than arrives.
 TEST(BsdfEnergy, FurnaceBySamplingEqualsAlbedo) {
-    forEachBsdf(kRoughnesses, kCosines, [](const Bsdf& bsdf, const BsdfInputs&, const Vec3&, const std::string& label) {
-        constexpr uint32_t kSamples = 16384;
-        glm::dvec3 sums[3] = {}, total(0);
+    forEachBsdf(kRoughnesses, kCosines, [](const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3&, const std::string& label) {
+        const uint32_t kSamples = inputs.layered ? 65536 : 16384;
+        glm::dvec3 sums[kLobeCount] = {}, total(0);
         for (uint32_t i = 0; i < kSamples; ++i) {
             const SampleStream stream(SamplerKind::Sobol, 0, 1, {3, 4, i});
             const BsdfSample s = bsdf.sample(stream.get1(0), stream.get2(2));
             if (s.lobe == Lobe::None) continue;
             total += glm::dvec3(s.weight);
-            for (int lobe = 0; lobe < 3; ++lobe) {
+            for (int lobe = 0; lobe < kLobeCount; ++lobe) {
                 if (s.delta && s.lobe == kLobes[lobe]) sums[lobe] += glm::dvec3(s.weight);
                 if (!s.delta) sums[lobe] += glm::dvec3(bsdf.evaluate(s.wi, kLobes[lobe]) / s.pdf);
             }
         }
         Vec3 albedos(0);
-        for (int lobe = 0; lobe < 3; ++lobe) {
+        for (int lobe = 0; lobe < kLobeCount; ++lobe) {
             expectClose(Vec3(sums[lobe] / double(kSamples)), bsdf.albedo(kLobes[lobe]),
                         label + ", " + nameOf(kLobes[lobe]));
             albedos += bsdf.albedo(kLobes[lobe]);
         }
         expectClose(Vec3(total / double(kSamples)), albedos, label + ", all lobes");
         EXPECT_LE(maxComponent(albedos), 1 + 1e-5f) << label;
-        EXPECT_LE(maxComponent(Vec3(total / double(kSamples))), 1.003f) << label;
+        EXPECT_LE(maxComponent(Vec3(total / double(kSamples))), 1.005f) << label;
     });
 }
 
 TEST(BsdfEnergy, QuadratureOfEvaluateEqualsAlbedo) {
     forEachBsdf({0.05f, 0.1f, 0.3f, 0.6f, 1}, kCosines,
                 [](const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo, const std::string& label) {
+                    // Stretched a hundredfold, the midpoint rule's facets are too few.
+                    if (inputs.layers.anisotropy > 0 && inputs.roughness < 0.3f) return;
                     Vec3 total(0);
                     for (const Lobe lobe : kLobes) {
                         if (isBlack(bsdf.albedo(lobe))) continue;
+                        if (lobe == Lobe::Clearcoat && inputs.layers.clearcoatRoughness == 0) {
+                            total += bsdf.albedo(lobe);
+                            continue;
+                        }
                         const Vec3 integral = integrateLobe(bsdf, inputs, wo, lobe);
                         expectClose(integral, bsdf.albedo(lobe), label + ", " + nameOf(lobe));
                         total += integral;
                     }
-                    EXPECT_LE(maxComponent(total), 1.002f) << label;
+                    EXPECT_LE(maxComponent(total), 1.004f) << label;
                 });
 }
 

@@ -1,0 +1,127 @@
+#pragma once
+#include "trace/albedo_table.h"
+#include "trace/bsdf_inputs.h"
+#include "trace/ggx.h"
+#include "trace/thin_film.h"
+
+namespace lumi {
+
+/// The scattering function below all layers at one point for one outgoing direction, in the local frame (z is the
+/// shading normal on wo's side, wo.z > 0; x is the direction of anisotropy). Lobes:
+///   diffuse: Lambert under the specular layer, weighted by what that layer lets through,
+///     f = rho/pi (1 - E(wo)) (1 - E(wi)) / (1 - Eavg)  [Kelemen & Szirmay-Kalos 2001],
+///     rho = baseColor (1-metallic)(1-transmission);
+///   specular reflection: GGX with visible normals [Heitz 2018], Schlick Fresnel from ior, specular, specularColor and
+///     (metals) baseColor; exact dielectric Fresnel where the base transmits. What facets scatter twice or more can be
+///     added to the Schlick part as a broad lobe m (1 - E1(wo)) (1 - E1(wi)) / (pi (1 - E1avg)) [Kulla & Conty 2017,
+///     "Revisiting Physically Based Shading at Imageworks"], E1 the albedo of facets that reflect everything,
+///     m = Favg^2 E1avg / (1 - Favg (1 - E1avg)). A thin film replaces its share of all Fresnel terms, seen from
+///     outside; the diffuse lobe under it is 1 - E(wo) alone, without the factor of wi;
+///   specular transmission: rough dielectric [Walter 2007] for solids, mirrored-reflection lobe for thin walls.
+/// Roughness below kDeltaRoughness is a perfect mirror or window: a delta lobe.
+///
+/// What is transported is radiance over the square of the refractive index, which refraction leaves as it is: no
+/// factor eta^2 on the way in, none on the way out. In air that is radiance; a closed piece of glass in a furnace gives
+/// 1 and albedos stay in [0,1] on both sides. Light emitted inside a solid is taken in the same measure.
+/// A thin wall tints by baseColor, each face of a solid by its root: what is seen through either has the colour once.
+class BaseBsdf {
+public:
+    static constexpr float kDeltaRoughness = kTabledRoughness;
+
+    BaseBsdf() = default;
+    BaseBsdf(const BsdfInputs& inputs, const Vec3& wo);
+
+    const Vec3& wo() const { return wo_; }  ///< as used: unit, a little above the horizon
+    BsdfValue evaluate(const Vec3& wi) const;
+    /// `uLobe` chooses diffuse or specular by the luminance of their albedos (but each at least kMinLobeShare), and
+    /// then reflection or transmission by what the facet drawn does.
+    BsdfSample sample(float uLobe, Vec2 u) const;
+
+    /// Directional albedo towards wo of one lobe, and of all specular lobes together. In [0,1].
+    Vec3 albedo(Lobe lobe) const;
+    Vec3 specularAlbedo() const { return albedo(Lobe::SpecularReflection) + albedo(Lobe::SpecularTransmission); }
+    /// One lobe alone, f |cos|, for tests and for modules that replace a term. 0 for delta lobes.
+    Vec3 evaluate(const Vec3& wi, Lobe lobe) const;
+    /// True if every lobe is a delta: next-event estimation cannot contribute.
+    bool isDelta() const;
+    /// Chance that sample() draws this lobe, lost samples included: exact for deltas and the diffuse lobe.
+    float probability(Lobe lobe) const;
+
+    /// Takes lobes away, as if they were black: what a path at a depth limit may no longer use. Albedos go with them.
+    void keep(bool diffuse, bool specular);
+
+    /// Makes the albedo tables that materials of this ior need (about 20 ms the first time), so that no path waits.
+    /// `transmits`: also those of dielectric boundaries. Any thread.
+    static void prepare(float ior, bool transmits);
+
+private:
+    static constexpr float kMinLobeShare = 0.05f;
+    enum Slot { kDiffuse, kReflection, kTransmission, kSlots };
+    struct Facet {
+        Vec3 reflected{0};           ///< Fresnel term of the reflection lobe
+        float through = 0;           ///< share that a dielectric boundary lets through
+        float reflectionChance = 1;  ///< of a specular sample at this facet
+    };
+
+    void setFacets(const BsdfInputs& inputs, float roughness);
+    void setFilm(const LayerInputs& layers, const Vec3& baseF0, float reflecting);
+    void setMultiple(float share);
+    void setDiffuse(const Vec3& rho, float f0, float f90);
+    void setDiffuseUnderFilm(const Vec3& rho, float specular);
+    void setSpecular(bool inside);
+    void applyFilm();
+    void chooseProbabilities();
+    float reflectionChance(const Vec3& reflected, float through) const;
+    Vec2 schlickAlbedo(const Vec3& w) const;
+    Vec2 schlickAverage() const;
+    float multipleBelow(const Vec3& w) const;
+    Facet facetAt(float cosTheta) const;
+
+    LobeValue diffuse(const Vec3& wi) const;
+    LobeValue reflection(const Vec3& wi, const Vec3& h) const;
+    LobeValue transmissionThin(const Vec3& mirrored, const Vec3& h) const;
+    LobeValue transmissionSolid(const Vec3& wi, const Vec3& h) const;
+    LobeValue transmission(const Vec3& wi) const;
+
+    BsdfSample sampleDiffuse(Vec2 u) const;
+    BsdfSample sampleSpecular(float choice, Vec2 u) const;
+    BsdfSample upperSample(const Vec3& wi, const Vec3& h, Lobe lobe) const;
+    BsdfSample transmissionSample(const Vec3& h) const;
+    BsdfSample deltaTransmissionSample() const;
+    BsdfSample deltaSample(Slot slot, const Vec3& wi) const;
+
+    Vec3 wo_{0, 0, 1};
+    Ggx ggx_;
+    RoughnessRow row_;           ///< of all albedo tables
+    float lambdaO_ = 0;          ///< ggx_.lambda(wo_)
+    float eta_ = 1;              ///< index of the far side over that of wo's side
+    bool smooth_ = false;        ///< reflection is a delta
+    bool deltaTransmission_ = false;
+    bool solid_ = false;
+    bool hasBoundary_ = false;   ///< the base transmits: the exact Fresnel term takes part
+
+    Vec3 diffuseScale_{0};       ///< rho (1 - E(wo)) / (1 - Eavg) / pi
+    float layerF0_ = 0, layerF90_ = 0;  ///< of the dielectric layer over the diffuse base
+    float layerMultiple_ = 0;    ///< m of that layer
+    Vec3 multiple_{0};           ///< m of reflection, its share of the material multiplied in
+    Vec3 multipleAlbedo_{0};     ///< multiple_ (1 - E1(wo)), part of the reflection lobe's albedo
+    Vec3 multipleScale_{0};      ///< over pi (1 - E1avg)
+    Vec3 f0_{0};                 ///< Schlick part of reflection, its shares of the material multiplied in
+    float f90_ = 0;
+    Vec3 boundaryTint_{0};       ///< weight of the exact Fresnel term in reflection
+    Vec3 transmissionTint_{0};   ///< and of what it lets through
+
+    bool hasFilm_ = false;
+    ThinFilm film_;
+    float filmShare_ = 0;        ///< of the surface
+    float filmReflecting_ = 0;   ///< share of the material that reflects under the film
+    Vec3 filmAlbedo_{0};         ///< mean reflectance of the film over what facets reflect towards wo
+
+    Vec3 albedo_[kSlots] = {Vec3(0), Vec3(0), Vec3(0)};
+    float probability_[kSlots] = {0, 0, 0};
+    float specularProbability_ = 0;  ///< of both specular lobes together
+    float multipleShare_ = 0;        ///< of those, samples for what is scattered more than once
+    float reflectedShare_ = 1;       ///< of reflection among the others, by albedo
+};
+
+}  // namespace lumi
