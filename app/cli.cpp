@@ -58,14 +58,14 @@ void addShared(CLI::App& app, SharedText& text, SceneOptions& scene) {
         ->type_name("ID=VALUE")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    app.add_option("--size", text.size, "Size of the rendered image (the scene's, else 1280x720)")->type_name("WxH");
-    app.add_option("--spp", text.spp, "Samples a pixel in each frame (1)")->type_name("N");
-    app.add_option("--fps", text.fps, "Frames a second: frame f shows time f/F (60)")->type_name("F");
+    app.add_option("--size", text.size, "Size of the rendered image (the scene's, else 1280x720)")->type_name("WxH")->take_last();
+    app.add_option("--spp", text.spp, "Samples a pixel in each frame (1)")->type_name("N")->take_last();
+    app.add_option("--fps", text.fps, "Frames a second: frame f shows time f/F (60)")->type_name("F")->take_last();
     app.add_option("--camera", text.camera, "Camera of the scene by name or number (the first)")
-        ->type_name("NAME|INDEX");
-    app.add_option("--seed", text.seed, "Another set of random numbers (0)")->type_name("N");
+        ->type_name("NAME|INDEX")->take_last();
+    app.add_option("--seed", text.seed, "Another set of random numbers (0)")->type_name("N")->take_last();
     app.add_option("--exposure", text.exposure, "Exposure of PNG, video and screen, in stops (the scene's)")
-        ->type_name("EV");
+        ->type_name("EV")->take_last();
 }
 
 void addMachine(CLI::App& app, MachineOptions& machine, bool computes) {

@@ -1,5 +1,7 @@
 #include "app/commands.h"
 
+#include <cstdio>
+
 #include "base/error.h"
 #include "base/isa.h"
 #include "base/memory.h"
@@ -27,6 +29,16 @@ std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const 
         }
     }
     return loadScene(file, log, load);
+}
+
+void printMessages(MessageLog& log, const MachineOptions& machine) {
+    const auto print = [quiet = machine.quiet](const Message& message) {
+        if (quiet && message.severity != Severity::Error) return;
+        const char* kinds[] = {"", "warning: ", "error: "};
+        std::fprintf(stderr, "%s%s\n", kinds[static_cast<int>(message.severity)], message.text.c_str());
+    };
+    for (const Message& message : log.messages()) print(message);
+    log.setListener(print);
 }
 
 Document makeDocument(std::shared_ptr<const Scene> scene, const SceneOptions& options) {

@@ -18,6 +18,10 @@ int runList(const ListOptions& options, const MachineOptions& machine);
 /// Threads, instruction set and memory limit, before anything is computed.
 void applyMachine(const MachineOptions& machine);
 
+/// Prints what has been reported on standard error, and from now on what is. A scene that fails to load is one line, so
+/// this is for those that loaded.
+void printMessages(MessageLog& log, const MachineOptions& machine);
+
 /// The scene that the options name, with the scene.index and scene.variant among their values.
 std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const SceneOptions& options, MessageLog& log,
                                        std::stop_token stop);

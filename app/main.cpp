@@ -38,15 +38,6 @@ private:
     std::jthread thread_;
 };
 
-/// Warnings and errors reach the terminal as they come; the value of --json holds them too.
-void printMessages(MessageLog& log, const MachineOptions& machine) {
-    log.setListener([quiet = machine.quiet](const Message& message) {
-        if (quiet && message.severity != Severity::Error) return;
-        const char* kind = message.severity == Severity::Info ? "" : message.severity == Severity::Warning ? "warning: " : "error: ";
-        std::fprintf(stderr, "%s%s\n", kind, message.text.c_str());
-    });
-}
-
 StartOptions startOptions(const SceneOptions& options) {
     StartOptions start;
     start.scene = findScene(options.scene.empty() ? "atrium" : options.scene);
@@ -81,7 +72,6 @@ int runCommand(const CommandLine& line) {
         }
         case Command::Render: {
             InterruptGuard interrupt;
-            printMessages(log, line.machine);
             return runRender(line.render, line.machine, log, interrupt.token());
         }
         case Command::Info: {

@@ -130,6 +130,7 @@ public:
 
 private:
     void start(const Document& document, const fs::path& file, const OutputChoice& choice, SceneReference reference) {
+        printMessages(log_, machine_);
         std::vector<std::string> names = options_.out;
         const std::string instance = document.view(choice.view).module;
         if (names.empty()) names.push_back(defaultOutput(file, instance));

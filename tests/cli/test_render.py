@@ -112,7 +112,7 @@ class Render(CommandTest):
         self.refused(2, ["ffmpeg", "a.mp4"], "render", "cornell", *QUIET, "--out", "a.mp4", PATH=str(self.folder))
 
     def test_an_interrupt_ends_it(self):
-        process = subprocess.Popen([PROGRAM, "render", "cornell", "--spp", "100000", "--out", "a.png"], cwd=self.folder,
+        process = subprocess.Popen([PROGRAM, "render", "cornell", "--spp", "65536", "--out", "a.png"], cwd=self.folder,
                                    stderr=subprocess.PIPE)
         time.sleep(1.5)
         started = time.time()
