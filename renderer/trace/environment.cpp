@@ -9,7 +9,10 @@
 namespace lumi {
 namespace {
 
-constexpr int kMostColumns = 2048, kMostRows = 1024;
+/// The grid that directions are drawn from: half of the image's, between these. Small tables stay in the cache.
+constexpr int kLeastColumns = 512, kMostColumns = 1024;
+
+int gridSize(int texels, int least, int most) { return std::min(texels, std::clamp(texels / 2, least, most)); }
 
 /// Index i of the interval of an ascending table (count + 1 entries from 0 to 1) that holds u, never an empty one.
 /// guide[k] is the interval that holds k / count.
@@ -82,8 +85,8 @@ void EnvironmentLight::buildTexels(const Image& image) {
 
 void EnvironmentLight::buildTables(const Image& image) {
     const int width = image.width(), height = image.height();
-    columns_ = std::min(width, kMostColumns);
-    rows_ = std::min(height, kMostRows);
+    columns_ = gridSize(width, kLeastColumns, kMostColumns);
+    rows_ = gridSize(height, kLeastColumns / 2, kMostColumns / 2);
     std::vector<float> weights(static_cast<size_t>(columns_) * static_cast<size_t>(rows_));
     std::vector<double> rowLuminance(static_cast<size_t>(rows_));
     parallelRanges(rows_, 16, [&](int64_t begin, int64_t end) {

@@ -25,6 +25,9 @@ struct Surface {
 /// The name of a hit: bodies of lights are named by where they were hit.
 SurfacePoint surfacePoint(const SceneTables& tables, const RawHit& hit, const Vec3& hitPosition, float time);
 
+/// Asks the caches for what evaluateSurface() will read of these hits.
+void prefetchSurfaces(const SceneTables& tables, std::span<const RawHit> hits);
+
 /// Interpolates and shades `point` as seen along unit `wo`; `width` is the footprint's width in metres (for mips).
 Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo, float width);
 
