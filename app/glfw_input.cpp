@@ -7,7 +7,9 @@ namespace lumi {
 
 namespace {
 
-InputQueue& queueOf(GLFWwindow* window) { return *static_cast<InputQueue*>(glfwGetWindowUserPointer(window)); }
+InputQueue& queueOf(GLFWwindow* window) {
+    return *static_cast<InputQueue*>(glfwGetWindowUserPointer(window));
+}
 
 Key keyFrom(int key) {
     if (key >= GLFW_KEY_SPACE && key <= GLFW_KEY_GRAVE_ACCENT) return static_cast<Key>(key);
@@ -73,9 +75,8 @@ void connectInput(GLFWwindow* window, InputQueue& queue) {
                   GLFW_MOUSE_BUTTON_MIDDLE == static_cast<int>(MouseButton::Middle));
     static_assert(GLFW_KEY_END - GLFW_KEY_ESCAPE == static_cast<int>(Key::End) - static_cast<int>(Key::Escape));
     glfwSetWindowUserPointer(window, &queue);
-    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
-        queueOf(w).add(MouseMoved{Vec2(x, y) * pixelRatio(w)});
-    });
+    glfwSetCursorPosCallback(
+        window, [](GLFWwindow* w, double x, double y) { queueOf(w).add(MouseMoved{Vec2(x, y) * pixelRatio(w)}); });
     glfwSetMouseButtonCallback(window, onButton);
     glfwSetScrollCallback(window, [](GLFWwindow* w, double x, double y) { queueOf(w).add(WheelTurned{Vec2(x, y)}); });
     glfwSetKeyCallback(window, onKey);

@@ -14,7 +14,8 @@ namespace {
 /// Without a script: wait for the picture, one shot.
 std::vector<ScriptLine> plainShot(const ViewOptions& options) {
     const std::string name = options.start.scene.empty() ? "window" : options.start.scene.stem().string();
-    const std::string waits = options.start.scene.empty() ? "" : "wait-load\nwait-spp " + std::to_string(options.samples) + "\n";
+    const std::string waits =
+        options.start.scene.empty() ? "" : "wait-load\nwait-spp " + std::to_string(options.samples) + "\n";
     return parseViewScript(waits + "shot " + name + "\n", "view");
 }
 

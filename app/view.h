@@ -7,12 +7,13 @@ namespace lumi {
 
 struct ViewOptions {
     StartOptions start;
-    Extent2 size{1280, 800};         ///< of the window's content, in pixels
-    std::filesystem::path script;    ///< input events, one a line (see app/view_script.h); empty: wait for an image, one shot
-    std::filesystem::path out;       ///< folder for the PNGs; made if it is missing
-    int samples = 16;                ///< without a script: how many samples a pixel the shot waits for
-    bool json = false;               ///< prints one JSON value on stdout: files written, frames, UI time
-    bool quiet = false;              ///< nothing on stderr but errors
+    Extent2 size{1280, 800};  ///< of the window's content, in pixels
+    std::filesystem::path
+        script;  ///< input events, one a line (see app/view_script.h); empty: wait for an image, one shot
+    std::filesystem::path out;  ///< folder for the PNGs; made if it is missing
+    int samples = 16;           ///< without a script: how many samples a pixel the shot waits for
+    bool json = false;          ///< prints one JSON value on stdout: files written, frames, UI time
+    bool quiet = false;         ///< nothing on stderr but errors
 };
 
 /// Draws the window's content without a display, driven by a script. Returns the exit code.

@@ -33,7 +33,8 @@ MouseButton button(const ScriptLine& line) {
     if (name == "left") return MouseButton::Left;
     if (name == "right") return MouseButton::Right;
     if (name == "middle") return MouseButton::Middle;
-    throwBadInput({.what = "no such mouse button", .where = line.where, .expected = "left, right or middle", .found = name});
+    throwBadInput(
+        {.what = "no such mouse button", .where = line.where, .expected = "left, right or middle", .found = name});
 }
 
 KeyChord chordOf(const ScriptLine& line) {
@@ -45,7 +46,10 @@ KeyChord chordOf(const ScriptLine& line) {
 }  // namespace
 
 ViewDriver::ViewDriver(const ViewOptions& options)
-    : options_(options), context_(createHeadlessContext()), session_(log_), interface_(context_->gl(), session_, log_),
+    : options_(options),
+      context_(createHeadlessContext()),
+      session_(log_),
+      interface_(context_->gl(), session_, log_),
       size_(options.size) {
     interface_.uiMap().setEnabled(true);
     interface_.state().captures = options.out;
@@ -75,7 +79,8 @@ void ViewDriver::wait(const ScriptLine& line, const std::function<bool()>& until
     const Timer timer;
     while (!until()) {
         if (timer.elapsedMs() > kLongestWaitMs)
-            throw Error(ErrorKind::CheckFailed, {.what = "waited too long for \"" + line.command + ' ' + line.rest + '"', .where = line.where});
+            throw Error(ErrorKind::CheckFailed,
+                        {.what = "waited too long for \"" + line.command + ' ' + line.rest + '"', .where = line.where});
         build();
         std::this_thread::sleep_for(std::chrono::milliseconds(8));
     }
@@ -89,7 +94,8 @@ Vec2 ViewDriver::centreOf(const ScriptLine& line, const std::string& name) {
     std::vector<std::string> names;
     for (const UiMap::Item& known : interface_.uiMap().items()) names.push_back(known.name);
     const std::string nearest = nearestName(name, names);
-    throwBadInput({.what = "nothing on the screen is called \"" + name + '"' + (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"),
+    throwBadInput({.what = "nothing on the screen is called \"" + name + '"' +
+                           (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"),
                    .where = line.where});
 }
 
@@ -156,27 +162,34 @@ void ViewDriver::waits(const ScriptLine& line) {
             if (session_.loadStatus().loading) return false;
             // A failed load with nothing to show will never draw.
             for (const Message& message : log_.messages())
-                if (message.severity == Severity::Error && !session_.hasScene()) throw Error(ErrorKind::BadInput, {.what = message.text});
+                if (message.severity == Severity::Error && !session_.hasScene())
+                    throw Error(ErrorKind::BadInput, {.what = message.text});
+            build();  // the document that the load left, not the one before
             return state.snapshot && state.document.scene() && state.snapshot->scene &&
                    state.snapshot->scene->scene->path == state.document.scene()->path;
         });
+    } else if (line.command == "wait-shown") {
+        wait(line, [&] { return state.snapshot && state.snapshot->revision >= session_.revision(); });
     } else if (line.command == "wait-frames") {
         const FrameNumber from = state.snapshot ? state.snapshot->frame : -1;
         const auto more = static_cast<FrameNumber>(number(line, 0));
-        wait(line, [&] { return state.snapshot && (state.snapshot->frame >= from + more || state.snapshot->frame < from); });
+        wait(line,
+             [&] { return state.snapshot && (state.snapshot->frame >= from + more || state.snapshot->frame < from); });
     } else if (line.command == "wait-spp") {
         const auto samples = static_cast<uint64_t>(number(line, 0));
         wait(line, [&] { return state.snapshot && state.snapshot->accumulatedSamples >= samples; });
     } else {
         wait(line, [&] {
             const std::vector<Message> messages = log_.messages();
-            return std::any_of(messages.begin(), messages.end(), [&](const Message& m) { return m.text.find(line.rest) != std::string::npos; });
+            return std::any_of(messages.begin(), messages.end(),
+                               [&](const Message& m) { return m.text.find(line.rest) != std::string::npos; });
         });
     }
 }
 
 void ViewDriver::shot(const std::string& name) {
-    if (!framebuffer_ || !(framebuffer_->extent() == size_)) framebuffer_ = std::make_unique<Framebuffer>(context_->gl(), size_);
+    if (!framebuffer_ || !(framebuffer_->extent() == size_))
+        framebuffer_ = std::make_unique<Framebuffer>(context_->gl(), size_);
     framebuffer_->bind();
     interface_.draw(size_);
     files_.push_back(options_.out / (name + ".png"));
@@ -188,7 +201,8 @@ void ViewDriver::run(const ScriptLine& line) {
     if (c == "size") {
         size_ = {static_cast<int>(number(line, 0)), static_cast<int>(number(line, 1))};
         if (size_.empty() || size_.width > 16384 || size_.height > 16384)
-            throwBadInput({.what = "size is out of range", .where = line.where, .expected = "1 to 16384", .found = line.rest});
+            throwBadInput(
+                {.what = "size is out of range", .where = line.where, .expected = "1 to 16384", .found = line.rest});
         settle();
     } else if (c == "scale") {
         scale_ = std::clamp(number(line, 0), 0.5f, 4.0f);
@@ -208,7 +222,8 @@ void ViewDriver::run(const ScriptLine& line) {
         interface_.input().add(FilesDropped{{line.rest}});
         settle();
     } else if (c == "set") {
-        session_.setText(line.arguments[0], line.rest.substr(line.rest.find(line.arguments[1], line.arguments[0].size())));
+        session_.setText(line.arguments[0],
+                         line.rest.substr(line.rest.find(line.arguments[1], line.arguments[0].size())));
         session_.endEdit();
         settle();
     } else if (c == "pause") {
@@ -225,7 +240,9 @@ void ViewDriver::run(const ScriptLine& line) {
     }
 }
 
-void ViewDriver::finish() { build(2); }
+void ViewDriver::finish() {
+    build(2);
+}
 
 nlohmann::json ViewDriver::report() const {
     const AppState& state = interface_.state();

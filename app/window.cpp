@@ -25,7 +25,8 @@ constexpr const char* kRemedy = "; use `lumiscope render SCENE`, or `lumiscope v
 [[noreturn]] void noDisplay(const std::string& what) {
     const char* reason = nullptr;
     glfwGetError(&reason);
-    throw Error(ErrorKind::NoDisplay, {.what = what + (reason ? std::string(" (") + reason + ")" : std::string()) + kRemedy});
+    throw Error(ErrorKind::NoDisplay,
+                {.what = what + (reason ? std::string(" (") + reason + ")" : std::string()) + kRemedy});
 }
 
 struct GlfwLibrary {
@@ -65,7 +66,7 @@ public:
     }
     void show(PointerShape shape) {
         if (shape == shown_) return;
-        constexpr int kShapes[] = {GLFW_ARROW_CURSOR, GLFW_HAND_CURSOR, GLFW_IBEAM_CURSOR,
+        constexpr int kShapes[] = {GLFW_ARROW_CURSOR,   GLFW_HAND_CURSOR,    GLFW_IBEAM_CURSOR,
                                    GLFW_HRESIZE_CURSOR, GLFW_VRESIZE_CURSOR, GLFW_CROSSHAIR_CURSOR};
         GLFWcursor*& cursor = cursors_[static_cast<size_t>(shape)];
         if (!cursor) cursor = glfwCreateStandardCursor(kShapes[static_cast<size_t>(shape)]);
@@ -83,9 +84,13 @@ private:
 class Workbench {
 public:
     explicit Workbench(const WindowOptions& options)
-        : options_(options), window_(makeWindow(options.size)),
-          gl_([](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); }), session_(log_),
-          interface_(gl_, session_, log_), pointers_(window_.get()), writer_(log_) {
+        : options_(options),
+          window_(makeWindow(options.size)),
+          gl_([](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); }),
+          session_(log_),
+          interface_(gl_, session_, log_),
+          pointers_(window_.get()),
+          writer_(log_) {
         connectInput(window_.get(), interface_.input());
         interface_.uiMap().setEnabled(!options.uiMap.empty());
         AppState& state = interface_.state();
@@ -136,7 +141,9 @@ private:
         if (!state.clipboard.empty()) glfwSetClipboardString(window_.get(), state.clipboard.c_str());
         state.clipboard.clear();
         const Scene* scene = state.document.scene();
-        const std::string name = !scene ? "" : scene->title.empty() ? std::filesystem::path(scene->path).stem().string() : scene->title;
+        const std::string name = !scene                 ? ""
+                                 : scene->title.empty() ? std::filesystem::path(scene->path).stem().string()
+                                                        : scene->title;
         const std::string title = name.empty() ? "Lumiscope" : name + " - Lumiscope";
         if (title != title_) glfwSetWindowTitle(window_.get(), title.c_str());
         title_ = title;

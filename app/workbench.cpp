@@ -17,7 +17,9 @@ void openAtStart(Session& session, AppState& state, const StartOptions& start) {
 }
 
 void PictureWriter::write(Image8 picture, const std::filesystem::path& path) {
-    std::erase_if(pending_, [](const std::future<void>& f) { return f.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
+    std::erase_if(pending_, [](const std::future<void>& f) {
+        return f.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    });
     pending_.push_back(std::async(std::launch::async, [this, path, image = std::move(picture)] {
         try {
             writePng(path, image);

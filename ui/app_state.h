@@ -35,7 +35,8 @@ struct AppState {
     Vec2 hoveredPaneSize{1};
 
     PanelTab tab = PanelTab::View;
-    bool uiHidden = false, helpOpen = false, browserOpen = false, messagesOpen = false, bufferPickerWanted = false;
+    bool uiHidden = false, panelHidden = false, helpOpen = false, browserOpen = false, messagesOpen = false,
+         bufferPickerWanted = false, modulePickerWanted = false;
     std::string parameterSearch;
 
     using Bookmarks = std::array<std::optional<Camera>, 9>;
@@ -44,7 +45,7 @@ struct AppState {
     std::filesystem::path captures;  ///< folder for screenshots; empty: the current one
 
     UiTiming timing;
-    std::string clipboard;            ///< text for the system's clipboard, taken by the window
+    std::string clipboard;  ///< text for the system's clipboard, taken by the window
     bool windowShotWanted = false, quit = false;
 
     /// Takes the session's present state. Once a frame, before anything is drawn.

@@ -26,7 +26,8 @@ void drawRow(AppState& state, int pane, const BufferEntry& entry, size_t index, 
     list.AddText(ImVec2(corner.x + px(10), y), now ? palette::kAccent : palette::kText, entry.name.c_str());
     const WithFont small(ui().fonts.small);
     const std::string right = entry.channels + (index < 9 ? fmt::format("    {}", index + 1) : "     ");
-    list.AddText(ImVec2(corner.x + width - ImGui::CalcTextSize(right.c_str()).x - px(8), y + px(1)), palette::kFaint, right.c_str());
+    list.AddText(ImVec2(corner.x + width - ImGui::CalcTextSize(right.c_str()).x - px(8), y + px(1)), palette::kFaint,
+                 right.c_str());
     ImGui::PopID();
 }
 

@@ -15,7 +15,9 @@ Vec3 rotated(const Vec3& v, float angle, const Vec3& axis) {
     return Vec3(glm::rotate(Mat4(1), angle, axis) * Vec4(v, 0));
 }
 
-Vec3 rightOf(const Camera& camera) { return Vec3(lookAt(camera.eye, camera.target, camera.up)[0]); }
+Vec3 rightOf(const Camera& camera) {
+    return Vec3(lookAt(camera.eye, camera.target, camera.up)[0]);
+}
 
 /// `direction` turned by yaw around up and by pitch around right, kept off the poles.
 Vec3 turned(const Camera& camera, const Vec3& direction, float yaw, float pitch) {

@@ -86,65 +86,133 @@ void closeTopmost(AppState& state) {
         state.quit = true;
 }
 
-std::string vectorText(const Vec3& v) { return fmt::format("{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z); }
+std::string vectorText(const Vec3& v) {
+    return fmt::format("{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z);
+}
 
 void runPictureCommand(AppState& state, Command command, int index) {
     switch (command) {
-        case Command::ShowBuffer: showBuffer(state, index); break;
-        case Command::PickBuffer: state.bufferPickerWanted = true; break;
-        case Command::NextModule: cycleModule(state, 1); break;
-        case Command::PreviousModule: cycleModule(state, -1); break;
+        case Command::ShowBuffer:
+            showBuffer(state, index);
+            break;
+        case Command::PickBuffer:
+            state.bufferPickerWanted = true;
+            break;
+        case Command::NextModule:
+            cycleModule(state, 1);
+            break;
+        case Command::PreviousModule:
+            cycleModule(state, -1);
+            break;
         case Command::CycleLayout:
             state.setLayout(static_cast<Layout>((static_cast<int>(state.layout()) + 1) % 3));
             break;
-        case Command::SwapPanes: swapPanes(state); break;
-        case Command::ExposureDown: changeExposure(state, -0.25f); break;
-        case Command::ExposureUp: changeExposure(state, 0.25f); break;
-        case Command::Fit: state.view.fit(); break;
-        case Command::ActualSize: state.view.setZoom(1); break;
-        case Command::Loupe: state.loupe = !state.loupe; break;
-        default: break;
+        case Command::SwapPanes:
+            swapPanes(state);
+            break;
+        case Command::ExposureDown:
+            changeExposure(state, -0.25f);
+            break;
+        case Command::ExposureUp:
+            changeExposure(state, 0.25f);
+            break;
+        case Command::Fit:
+            state.view.fit();
+            break;
+        case Command::ActualSize:
+            state.view.setZoom(1);
+            break;
+        case Command::Loupe:
+            state.loupe = !state.loupe;
+            break;
+        default:
+            break;
     }
 }
 
 void runTimeCommand(AppState& state, Command command) {
     Session& session = state.session;
     switch (command) {
-        case Command::PlayTime: session.setPlaying(!session.playing()); break;
-        case Command::PauseRendering: session.setRendering(!session.rendering()); break;
-        case Command::Step: session.step(); break;
-        case Command::StepBack: session.stepBack(); break;
-        case Command::Restart: session.restart(); break;
-        case Command::ReloadScene: session.reload(); break;
-        case Command::Undo: session.undo(); break;
-        case Command::Redo: session.redo(); break;
-        default: break;
+        case Command::PlayTime:
+            session.setPlaying(!session.playing());
+            break;
+        case Command::PauseRendering:
+            session.setRendering(!session.rendering());
+            break;
+        case Command::Step:
+            session.step();
+            break;
+        case Command::StepBack:
+            session.stepBack();
+            break;
+        case Command::Restart:
+            session.restart();
+            break;
+        case Command::ReloadScene:
+            session.reload();
+            break;
+        case Command::Undo:
+            session.undo();
+            break;
+        case Command::Redo:
+            session.redo();
+            break;
+        default:
+            break;
     }
 }
 
 void runWindowCommand(AppState& state, Command command, int index) {
     switch (command) {
-        case Command::ToggleOrbit: state.leftDragOrbits = !state.leftDragOrbits; break;
+        case Command::ToggleOrbit:
+            state.leftDragOrbits = !state.leftDragOrbits;
+            break;
         case Command::StoreBookmark:
             state.bookmarks()[static_cast<size_t>(index)] = state.document.camera();
             state.log.info(fmt::format("Camera stored as bookmark {}.", index + 1));
             break;
-        case Command::RecallBookmark: recallBookmark(state, index); break;
+        case Command::RecallBookmark:
+            recallBookmark(state, index);
+            break;
         case Command::CopyCamera:
             state.clipboard = cameraAsCommandLine(state.document.camera());
             state.log.info("Camera copied: " + state.clipboard);
             break;
-        case Command::OpenScene: state.browserOpen = !state.browserOpen; break;
-        case Command::SavePicture: state.session.saveView(state.activePane, capturePath(state, "png")); break;
-        case Command::SaveBuffers: state.session.saveView(state.activePane, capturePath(state, "exr")); break;
-        case Command::SaveWindow: state.windowShotWanted = true; break;
-        case Command::ResetAll: resetAll(state); break;
-        case Command::ToggleUi: state.uiHidden = !state.uiHidden; break;
-        case Command::ToggleMessages: state.messagesOpen = !state.messagesOpen; break;
-        case Command::Help: state.helpOpen = !state.helpOpen; break;
-        case Command::Close: closeTopmost(state); break;
-        case Command::Quit: state.quit = true; break;
-        default: break;
+        case Command::OpenScene:
+            state.browserOpen = !state.browserOpen;
+            break;
+        case Command::SavePicture:
+            state.session.saveView(state.activePane, capturePath(state, "png"));
+            break;
+        case Command::SaveBuffers:
+            state.session.saveView(state.activePane, capturePath(state, "exr"));
+            break;
+        case Command::SaveWindow:
+            state.windowShotWanted = true;
+            break;
+        case Command::ResetAll:
+            resetAll(state);
+            break;
+        case Command::ToggleUi:
+            state.uiHidden = !state.uiHidden;
+            break;
+        case Command::TogglePanel:
+            state.panelHidden = !state.panelHidden;
+            break;
+        case Command::ToggleMessages:
+            state.messagesOpen = !state.messagesOpen;
+            break;
+        case Command::Help:
+            state.helpOpen = !state.helpOpen;
+            break;
+        case Command::Close:
+            closeTopmost(state);
+            break;
+        case Command::Quit:
+            state.quit = true;
+            break;
+        default:
+            break;
     }
 }
 
@@ -157,7 +225,7 @@ std::string sceneStem(const AppState& state) {
 bool worksWithoutScene(Command command) {
     return command == Command::OpenScene || command == Command::Help || command == Command::Close ||
            command == Command::Quit || command == Command::ToggleUi || command == Command::ToggleMessages ||
-           command == Command::SaveWindow || command == Command::ReloadScene;
+           command == Command::TogglePanel || command == Command::SaveWindow || command == Command::ReloadScene;
 }
 
 }  // namespace
@@ -174,8 +242,10 @@ void runCommand(AppState& state, Command command, int index) {
 }
 
 std::string cameraAsCommandLine(const Camera& camera) {
-    std::string text = "--set camera.eye=" + vectorText(camera.eye) + " --set camera.look-at=" + vectorText(camera.target);
-    if (camera.projection == Projection::Perspective) text += fmt::format(" --set camera.fov-y-deg={:.6g}", camera.fovYDeg);
+    std::string text =
+        "--set camera.eye=" + vectorText(camera.eye) + " --set camera.look-at=" + vectorText(camera.target);
+    if (camera.projection == Projection::Perspective)
+        text += fmt::format(" --set camera.fov-y-deg={:.6g}", camera.fovYDeg);
     return text;
 }
 
@@ -185,8 +255,9 @@ std::filesystem::path windowShotPath(const AppState& state) {
 
 std::filesystem::path capturePath(const AppState& state, const std::string& extension) {
     const auto frame = state.snapshot ? std::max<FrameNumber>(state.snapshot->frame, 0) : 0;
-    return unusedPath(state.captures / fmt::format("{}.{}.{}.{:04}.{}", sceneStem(state), state.module(state.activePane),
-                                                   state.buffer(state.activePane), frame, extension));
+    return unusedPath(state.captures / fmt::format("{}.{}.{}.{:04}.{}", sceneStem(state),
+                                                   state.module(state.activePane), state.buffer(state.activePane),
+                                                   frame, extension));
 }
 
 }  // namespace lumi

@@ -47,7 +47,9 @@ private:
 
 void drawTransport(const Pen& pen, Icon icon) {
     switch (icon) {
-        case Icon::Play: pen.filled({{-0.5f, -0.75f}, {0.75f, 0}, {-0.5f, 0.75f}}); break;
+        case Icon::Play:
+            pen.filled({{-0.5f, -0.75f}, {0.75f, 0}, {-0.5f, 0.75f}});
+            break;
         case Icon::Pause:
             pen.bar(-0.6f, -0.7f, -0.15f, 0.7f);
             pen.bar(0.15f, -0.7f, 0.6f, 0.7f);
@@ -70,16 +72,20 @@ void drawTransport(const Pen& pen, Icon icon) {
             pen.line({{-0.35f, -0.6f}, {-0.8f, -0.15f}, {-0.35f, 0.3f}});
             break;
         case Icon::Redo:
-            pen.line({{0.75f, -0.15f}, {-0.25f, -0.15f}, {-0.62f, 0.02f}, {-0.72f, 0.3f}, {-0.6f, 0.6f}, {-0.2f, 0.75f}});
+            pen.line(
+                {{0.75f, -0.15f}, {-0.25f, -0.15f}, {-0.62f, 0.02f}, {-0.72f, 0.3f}, {-0.6f, 0.6f}, {-0.2f, 0.75f}});
             pen.line({{0.35f, -0.6f}, {0.8f, -0.15f}, {0.35f, 0.3f}});
             break;
-        default: break;
+        default:
+            break;
     }
 }
 
 void drawPane(const Pen& pen, Icon icon) {
     switch (icon) {
-        case Icon::Single: pen.box(-0.85f, -0.65f, 0.85f, 0.65f); break;
+        case Icon::Single:
+            pen.box(-0.85f, -0.65f, 0.85f, 0.65f);
+            break;
         case Icon::SideBySide:
             pen.box(-0.9f, -0.65f, -0.1f, 0.65f);
             pen.box(0.1f, -0.65f, 0.9f, 0.65f);
@@ -104,7 +110,8 @@ void drawPane(const Pen& pen, Icon icon) {
             pen.circle(-0.15f, -0.15f, 0.55f);
             pen.line({{0.27f, 0.27f}, {0.8f, 0.8f}});
             break;
-        default: break;
+        default:
+            break;
     }
 }
 
@@ -116,13 +123,17 @@ void drawSign(const Pen& pen, Icon icon) {
             pen.line({{-0.35f, -0.45f}, {-0.2f, -0.75f}, {0.2f, -0.75f}, {0.35f, -0.45f}});
             break;
         case Icon::Folder:
-            pen.line({{-0.85f, 0.65f}, {-0.85f, -0.6f}, {-0.25f, -0.6f}, {-0.05f, -0.35f}, {0.85f, -0.35f}, {0.85f, 0.65f}}, true);
+            pen.line(
+                {{-0.85f, 0.65f}, {-0.85f, -0.6f}, {-0.25f, -0.6f}, {-0.05f, -0.35f}, {0.85f, -0.35f}, {0.85f, 0.65f}},
+                true);
             break;
         case Icon::Close:
             pen.line({{-0.6f, -0.6f}, {0.6f, 0.6f}});
             pen.line({{0.6f, -0.6f}, {-0.6f, 0.6f}});
             break;
-        case Icon::Chevron: pen.line({{-0.5f, -0.25f}, {0, 0.25f}, {0.5f, -0.25f}}); break;
+        case Icon::Chevron:
+            pen.line({{-0.5f, -0.25f}, {0, 0.25f}, {0.5f, -0.25f}});
+            break;
         case Icon::Warning:
             pen.line({{0, -0.8f}, {0.9f, 0.7f}, {-0.9f, 0.7f}}, true);
             pen.line({{0, -0.25f}, {0, 0.2f}});
@@ -140,20 +151,39 @@ void drawSign(const Pen& pen, Icon icon) {
             break;
         case Icon::Help:
             pen.circle(0, 0, 0.85f);
-            pen.line({{-0.27f, -0.22f}, {-0.15f, -0.42f}, {0.12f, -0.45f}, {0.28f, -0.25f}, {0.2f, -0.02f}, {0, 0.12f}, {0, 0.22f}});
+            pen.line({{-0.27f, -0.22f},
+                      {-0.15f, -0.42f},
+                      {0.12f, -0.45f},
+                      {0.28f, -0.25f},
+                      {0.2f, -0.02f},
+                      {0, 0.12f},
+                      {0, 0.22f}});
             pen.dot(0, 0.46f, 0.09f);
             break;
-        case Icon::Bookmark: pen.line({{-0.5f, -0.8f}, {0.5f, -0.8f}, {0.5f, 0.8f}, {0, 0.35f}, {-0.5f, 0.8f}}, true); break;
+        case Icon::Bookmark:
+            pen.line({{-0.5f, -0.8f}, {0.5f, -0.8f}, {0.5f, 0.8f}, {0, 0.35f}, {-0.5f, 0.8f}}, true);
+            break;
         case Icon::Eye:
-            pen.line({{-0.9f, 0}, {-0.45f, -0.42f}, {0, -0.55f}, {0.45f, -0.42f}, {0.9f, 0}, {0.45f, 0.42f}, {0, 0.55f}, {-0.45f, 0.42f}}, true);
+            pen.line({{-0.9f, 0},
+                      {-0.45f, -0.42f},
+                      {0, -0.55f},
+                      {0.45f, -0.42f},
+                      {0.9f, 0},
+                      {0.45f, 0.42f},
+                      {0, 0.55f},
+                      {-0.45f, 0.42f}},
+                     true);
             pen.dot(0, 0, 0.24f);
             break;
         case Icon::Pin:
             pen.circle(0, -0.25f, 0.45f);
             pen.line({{0, 0.2f}, {0, 0.9f}});
             break;
-        case Icon::Lens: pen.circle(0, 0, 0.8f); break;
-        default: break;
+        case Icon::Lens:
+            pen.circle(0, 0, 0.8f);
+            break;
+        default:
+            break;
     }
 }
 

@@ -4,8 +4,33 @@
 namespace lumi {
 
 enum class Icon {
-    Play, Pause, Step, StepBack, Restart, Camera, Folder, Help, Close, Chevron, Single, SideBySide, Wipe, Search, Undo, Redo,
-    Warning, Error, Info, Fit, Loupe, Reset, Bookmark, Eye, Pin, Layers, Lens
+    Play,
+    Pause,
+    Step,
+    StepBack,
+    Restart,
+    Camera,
+    Folder,
+    Help,
+    Close,
+    Chevron,
+    Single,
+    SideBySide,
+    Wipe,
+    Search,
+    Undo,
+    Redo,
+    Warning,
+    Error,
+    Info,
+    Fit,
+    Loupe,
+    Reset,
+    Bookmark,
+    Eye,
+    Pin,
+    Layers,
+    Lens
 };
 
 /// Draws an icon as lines, sharp at any scale; `size` is the edge of its box in framebuffer pixels.

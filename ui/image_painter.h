@@ -11,12 +11,12 @@ namespace lumi {
 
 /// One rectangle of the window with one picture, or two with a wipe.
 struct PanePicture {
-    Vec2 corner{0}, size{0};         ///< of the rectangle, framebuffer pixels, top-left origin
-    int left = 0, right = 0;         ///< which uploaded pictures
-    Vec2 origin{0};                  ///< of the picture's top-left corner, from `corner`
-    float zoom = 1;                  ///< framebuffer pixels for each of the picture's
-    float wipeX = 1e9f;              ///< from `corner`: `right` is shown from there on
-    float grid = 0;                  ///< opacity of lines between the picture's pixels
+    Vec2 corner{0}, size{0};  ///< of the rectangle, framebuffer pixels, top-left origin
+    int left = 0, right = 0;  ///< which uploaded pictures
+    Vec2 origin{0};           ///< of the picture's top-left corner, from `corner`
+    float zoom = 1;           ///< framebuffer pixels for each of the picture's
+    float wipeX = 1e9f;       ///< from `corner`: `right` is shown from there on
+    float grid = 0;           ///< opacity of lines between the picture's pixels
 };
 
 /// Puts finished pictures (RGBA8) on the screen. A picture is uploaded when it is another one than before.

@@ -9,7 +9,9 @@ namespace lumi {
 
 namespace {
 
-bool& keyDown(Key key) { return ImGui::GetIO().KeysDown[static_cast<int>(key)]; }
+bool& keyDown(Key key) {
+    return ImGui::GetIO().KeysDown[static_cast<int>(key)];
+}
 
 void updateModifiers() {
     ImGuiIO& io = ImGui::GetIO();
@@ -19,7 +21,9 @@ void updateModifiers() {
     io.KeySuper = keyDown(Key::LeftSuper) || keyDown(Key::RightSuper);
 }
 
-bool isModifier(Key key) { return key >= Key::LeftShift && key <= Key::RightSuper; }
+bool isModifier(Key key) {
+    return key >= Key::LeftShift && key <= Key::RightSuper;
+}
 
 /// Applies events; false if one must wait for the next frame.
 class Applier {
@@ -88,17 +92,28 @@ void mapImGuiKeys() {
         Key key;
     };
     constexpr std::array kPairs{
-        Pair{ImGuiKey_Tab, Key::Tab},           Pair{ImGuiKey_LeftArrow, Key::Left},
-        Pair{ImGuiKey_RightArrow, Key::Right},  Pair{ImGuiKey_UpArrow, Key::Up},
-        Pair{ImGuiKey_DownArrow, Key::Down},    Pair{ImGuiKey_PageUp, Key::PageUp},
-        Pair{ImGuiKey_PageDown, Key::PageDown}, Pair{ImGuiKey_Home, Key::Home},
-        Pair{ImGuiKey_End, Key::End},           Pair{ImGuiKey_Insert, Key::Insert},
-        Pair{ImGuiKey_Delete, Key::Delete},     Pair{ImGuiKey_Backspace, Key::Backspace},
-        Pair{ImGuiKey_Space, Key::Space},       Pair{ImGuiKey_Enter, Key::Enter},
-        Pair{ImGuiKey_Escape, Key::Escape},     Pair{ImGuiKey_KeyPadEnter, Key::KeypadEnter},
-        Pair{ImGuiKey_A, Key::A},               Pair{ImGuiKey_C, Key::C},
-        Pair{ImGuiKey_V, Key::V},               Pair{ImGuiKey_X, Key::X},
-        Pair{ImGuiKey_Y, Key::Y},               Pair{ImGuiKey_Z, Key::Z},
+        Pair{ImGuiKey_Tab, Key::Tab},
+        Pair{ImGuiKey_LeftArrow, Key::Left},
+        Pair{ImGuiKey_RightArrow, Key::Right},
+        Pair{ImGuiKey_UpArrow, Key::Up},
+        Pair{ImGuiKey_DownArrow, Key::Down},
+        Pair{ImGuiKey_PageUp, Key::PageUp},
+        Pair{ImGuiKey_PageDown, Key::PageDown},
+        Pair{ImGuiKey_Home, Key::Home},
+        Pair{ImGuiKey_End, Key::End},
+        Pair{ImGuiKey_Insert, Key::Insert},
+        Pair{ImGuiKey_Delete, Key::Delete},
+        Pair{ImGuiKey_Backspace, Key::Backspace},
+        Pair{ImGuiKey_Space, Key::Space},
+        Pair{ImGuiKey_Enter, Key::Enter},
+        Pair{ImGuiKey_Escape, Key::Escape},
+        Pair{ImGuiKey_KeyPadEnter, Key::KeypadEnter},
+        Pair{ImGuiKey_A, Key::A},
+        Pair{ImGuiKey_C, Key::C},
+        Pair{ImGuiKey_V, Key::V},
+        Pair{ImGuiKey_X, Key::X},
+        Pair{ImGuiKey_Y, Key::Y},
+        Pair{ImGuiKey_Z, Key::Z},
     };
     for (const Pair& pair : kPairs) ImGui::GetIO().KeyMap[pair.imgui] = static_cast<int>(pair.key);
 }

@@ -19,11 +19,37 @@ std::string number(float value) {
 
 ImU32 channelColour(char channel) {
     switch (channel) {
-        case 'R': case 'X': return IM_COL32(255, 138, 138, 255);
-        case 'G': return IM_COL32(128, 218, 150, 255);
-        case 'B': return IM_COL32(128, 178, 255, 255);
-        default: return palette::kText;
+        case 'R':
+            return IM_COL32(255, 138, 138, 255);
+        case 'G':
+            return IM_COL32(128, 218, 150, 255);
+        case 'B':
+            return IM_COL32(128, 178, 255, 255);
+        default:
+            return palette::kText;
     }
+}
+
+/// Values in columns as wide as the widest number; ids one after the other. They wrap where the panel ends.
+void drawValues(const PixelValue& row) {
+    const WithFont mono(ui().fonts.mono);
+    const float cell = ImGui::CalcTextSize("-0.00e+00").x + px(4), line = ImGui::GetTextLineHeight();
+    const float width = ImGui::GetContentRegionAvail().x;
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const bool colour = row.channels.compare(0, 3, "RGB") == 0;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    ImVec2 at(0, 0);
+    const size_t count = row.isId ? row.ids.size() : row.values.size();
+    for (size_t i = 0; i < count; ++i) {
+        const std::string text = row.isId ? fmt::format("{}", row.ids[i]) : number(row.values[i]);
+        const float needed = row.isId ? ImGui::CalcTextSize(text.c_str()).x + px(8) : cell;
+        if (at.x > 0 && at.x + needed > width + px(4)) at = ImVec2(0, at.y + line);
+        const bool bad = !row.isId && !std::isfinite(row.values[i]) && row.channels != "Z";
+        const ImU32 tint = bad ? palette::kError : colour && i < 3 ? channelColour(row.channels[i]) : palette::kText;
+        list.AddText(corner + at, tint, text.c_str());
+        at.x += needed;
+    }
+    ImGui::Dummy(ImVec2(width, at.y + line));
 }
 
 void drawRow(const PixelValue& row, bool shown) {
@@ -31,20 +57,7 @@ void drawRow(const PixelValue& row, bool shown) {
     ImGui::TableNextColumn();
     smallText(row.buffer, shown ? palette::kAccent : palette::kDim);
     ImGui::TableNextColumn();
-    const WithFont mono(ui().fonts.mono);
-    const float cell = ImGui::CalcTextSize("-0.00e+00 ").x * 0.96f;
-    const size_t count = row.isId ? row.ids.size() : row.values.size();
-    const float start = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
-    for (size_t i = 0; i < count; ++i) {
-        const std::string text = row.isId ? fmt::format("{}", row.ids[i]) : number(row.values[i]);
-        const bool ends = !row.isId && cell * static_cast<float>(i + 1) > width + 1;
-        if (i > 0 && !ends && !row.isId) ImGui::SameLine(start + cell * static_cast<float>(i), 0);
-        if (i > 0 && row.isId) ImGui::SameLine(0, px(8));
-        const char channel = i < row.channels.size() ? row.channels[i] : 'Y';
-        const bool colour = row.channels.compare(0, 3, "RGB") == 0;
-        const bool bad = !row.isId && !std::isfinite(row.values[i]) && row.channels != "Z";
-        ImGui::TextColored(toVec4(bad ? palette::kError : colour ? channelColour(channel) : palette::kText), "%s", text.c_str());
-    }
+    drawValues(row);
 }
 
 }  // namespace
@@ -60,9 +73,10 @@ void drawInspector(AppState& state) {
         ImGui::Text("(%d, %d)", pixel->x, pixel->y);
     }
     ImGui::SameLine(0, px(10));
-    smallText(state.pinned ? "pinned; click it again to release" : "under the pointer", state.pinned ? palette::kAccent : palette::kDim);
+    smallText(state.pinned ? "pinned; click it again to release" : "under the pointer",
+              state.pinned ? palette::kAccent : palette::kDim);
     if (!ImGui::BeginTable("pixel", 2, ImGuiTableFlags_RowBg)) return;
-    ImGui::TableSetupColumn("buffer", ImGuiTableColumnFlags_WidthFixed, px(112));
+    ImGui::TableSetupColumn("buffer", ImGuiTableColumnFlags_WidthFixed, px(104));
     ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
     const std::string shown = state.buffer(state.activePane);
     for (const PixelValue& row : state.session.inspect(*state.snapshot, *pixel)) drawRow(row, row.buffer == shown);

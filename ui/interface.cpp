@@ -30,15 +30,24 @@ ImGuiContext* makeContext() {
 }  // namespace
 
 Interface::Interface(const GlFunctions& gl, Session& session, MessageLog& log)
-    : gl_(gl), state_(session, log), imgui_(makeContext()), context_(std::make_unique<UiContext>()), renderer_(gl), painter_(gl) {
+    : gl_(gl),
+      state_(session, log),
+      imgui_(makeContext()),
+      context_(std::make_unique<UiContext>()),
+      renderer_(gl),
+      painter_(gl) {
     ImGui::GetIO().UserData = context_.get();
     context_->scale = 0;
     setScale(1);
 }
 
-Interface::~Interface() { ImGui::DestroyContext(imgui_); }
+Interface::~Interface() {
+    ImGui::DestroyContext(imgui_);
+}
 
-UiMap& Interface::uiMap() { return context_->map; }
+UiMap& Interface::uiMap() {
+    return context_->map;
+}
 
 void Interface::setScale(float scale) {
     if (scale == context_->scale) return;
@@ -55,7 +64,8 @@ void Interface::dispatch(const FrameInput& input) {
         const auto command = commandFor(chord);
         if (!command) continue;
         const bool typing = ImGui::GetIO().WantTextInput;
-        const bool always = command->command == Command::Quit || command->command == Command::Help || chord.key >= Key::F1;
+        const bool always =
+            command->command == Command::Quit || command->command == Command::Help || chord.key >= Key::F1;
         if (typing && !always) continue;
         const bool popup = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
         if (command->command == Command::Close && popup)
@@ -68,7 +78,10 @@ void Interface::dispatch(const FrameInput& input) {
 void Interface::layOut(Extent2 target) {
     const ImVec2 size(static_cast<float>(target.width), static_cast<float>(target.height));
     const float bar = state_.uiHidden ? 0 : px(46), status = state_.uiHidden ? 0 : px(26);
-    const float panel = state_.uiHidden || size.x < px(560) ? 0 : std::floor(std::clamp(0.27f * size.x, px(270), px(348)));
+    const float panel = state_.uiHidden || state_.panelHidden || size.x < px(560)
+                            ? 0
+                            : std::floor(std::clamp(0.27f * size.x, px(270), px(348)));
+    state_.session.setInspecting(panel > 0 && state_.tab == PanelTab::View);
     const ImRect picture(ImVec2(0, bar), ImVec2(size.x - panel, size.y - status));
     pictures_ = drawViewport(state_, picture);
     drawEmptyPicture(state_, picture);
@@ -115,7 +128,9 @@ void Interface::draw(Extent2 target) {
 
 bool Interface::busy() const {
     const ImGuiIO& io = imgui_->IO;
-    const auto held = [](const auto& states) { return std::any_of(std::begin(states), std::end(states), [](bool down) { return down; }); };
+    const auto held = [](const auto& states) {
+        return std::any_of(std::begin(states), std::end(states), [](bool down) { return down; });
+    };
     return framesToSettle_ > 0 || held(io.MouseDown) || held(io.KeysDown) || state_.session.loadStatus().loading;
 }
 
@@ -128,12 +143,18 @@ bool Interface::wantsFrame() const {
 
 PointerShape Interface::pointer() const {
     switch (ImGui::GetMouseCursor()) {
-        case ImGuiMouseCursor_TextInput: return PointerShape::Text;
-        case ImGuiMouseCursor_ResizeEW: return PointerShape::ResizeHorizontal;
-        case ImGuiMouseCursor_ResizeNS: return PointerShape::ResizeVertical;
-        case ImGuiMouseCursor_ResizeAll: return PointerShape::Move;
-        case ImGuiMouseCursor_Hand: return PointerShape::Hand;
-        default: return PointerShape::Arrow;
+        case ImGuiMouseCursor_TextInput:
+            return PointerShape::Text;
+        case ImGuiMouseCursor_ResizeEW:
+            return PointerShape::ResizeHorizontal;
+        case ImGuiMouseCursor_ResizeNS:
+            return PointerShape::ResizeVertical;
+        case ImGuiMouseCursor_ResizeAll:
+            return PointerShape::Move;
+        case ImGuiMouseCursor_Hand:
+            return PointerShape::Hand;
+        default:
+            return PointerShape::Arrow;
     }
 }
 

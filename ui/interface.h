@@ -58,7 +58,7 @@ private:
     DrawRenderer renderer_;
     ImagePainter painter_;
     std::vector<PanePicture> pictures_;
-    int framesToSettle_ = 0;       ///< frames still wanted after the last event: hovers, popups, layout
+    int framesToSettle_ = 0;  ///< frames still wanted after the last event: hovers, popups, layout
     size_t messagesSeen_ = 0;
     uint64_t revisionSeen_ = 0;
 };

@@ -13,15 +13,24 @@ struct NamedKey {
     const char* name;
 };
 constexpr std::array kNamedKeys{
-    NamedKey{Key::Space, "Space"},        NamedKey{Key::Escape, "Esc"},
-    NamedKey{Key::Enter, "Enter"},        NamedKey{Key::Tab, "Tab"},
-    NamedKey{Key::Backspace, "Backspace"}, NamedKey{Key::Insert, "Insert"},
-    NamedKey{Key::Delete, "Delete"},      NamedKey{Key::Right, "Right"},
-    NamedKey{Key::Left, "Left"},          NamedKey{Key::Down, "Down"},
-    NamedKey{Key::Up, "Up"},              NamedKey{Key::PageUp, "PgUp"},
-    NamedKey{Key::PageDown, "PgDn"},      NamedKey{Key::Home, "Home"},
-    NamedKey{Key::End, "End"},            NamedKey{Key::LeftShift, "Shift"},
-    NamedKey{Key::LeftControl, "Ctrl"},   NamedKey{Key::LeftAlt, "Alt"},
+    NamedKey{Key::Space, "Space"},
+    NamedKey{Key::Escape, "Esc"},
+    NamedKey{Key::Enter, "Enter"},
+    NamedKey{Key::Tab, "Tab"},
+    NamedKey{Key::Backspace, "Backspace"},
+    NamedKey{Key::Insert, "Insert"},
+    NamedKey{Key::Delete, "Delete"},
+    NamedKey{Key::Right, "Right"},
+    NamedKey{Key::Left, "Left"},
+    NamedKey{Key::Down, "Down"},
+    NamedKey{Key::Up, "Up"},
+    NamedKey{Key::PageUp, "PgUp"},
+    NamedKey{Key::PageDown, "PgDn"},
+    NamedKey{Key::Home, "Home"},
+    NamedKey{Key::End, "End"},
+    NamedKey{Key::LeftShift, "Shift"},
+    NamedKey{Key::LeftControl, "Ctrl"},
+    NamedKey{Key::LeftAlt, "Alt"},
 };
 
 std::string lower(std::string text) {

@@ -20,7 +20,8 @@ bool chip(const std::string& name, const std::string& text, bool strong) {
     const ImRect box(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
     ImDrawList& list = *ImGui::GetWindowDrawList();
     if (ImGui::IsItemHovered()) list.AddRectFilled(box.Min, box.Max, IM_COL32(255, 255, 255, 26), px(5));
-    list.AddText(ImVec2(box.Min.x + px(10), std::floor(box.GetCenter().y - 0.5f * ImGui::GetFontSize())), palette::kText, text.c_str());
+    list.AddText(ImVec2(box.Min.x + px(10), std::floor(box.GetCenter().y - 0.5f * ImGui::GetFontSize())),
+                 palette::kText, text.c_str());
     drawIcon(list, Icon::Chevron, ImVec2(box.Max.x - px(14), box.GetCenter().y), px(10), palette::kDim);
     return clicked;
 }
@@ -40,10 +41,12 @@ void drawModulePopup(AppState& state, int pane) {
     smallText("Module");
     const std::string now = state.module(pane);
     for (const ModuleEntry& entry : moduleCatalog()) {
-        if (ImGui::Selectable(fmt::format("{}##{}", entry.title, entry.id).c_str(), now == entry.id, 0, ImVec2(px(230), 0)))
+        if (ImGui::Selectable(fmt::format("{}##{}", entry.title, entry.id).c_str(), now == entry.id, 0,
+                              ImVec2(px(230), 0)))
             state.setOnce(state.viewId(pane, "module"), std::string(entry.id));
         markItem(std::string("module:") + entry.id);
-        if (ImGui::IsItemHovered()) tooltip(entry.id, entry.paper && *entry.paper ? std::string("Paper: ") + entry.paper : "");
+        if (ImGui::IsItemHovered())
+            tooltip(entry.id, entry.paper && *entry.paper ? std::string("Paper: ") + entry.paper : "");
     }
     ImGui::EndPopup();
 }
@@ -58,7 +61,10 @@ void drawPaneLabel(AppState& state, int pane, const ImRect& rect, bool alignRigh
     if (shown && shown->info.nonFinite > 0) words += fmt::format(" · {} pixels not finite", shown->info.nonFinite);
 
     float fixed = px(34) * 2 + px(30);
-    { const WithFont strong(ui().fonts.strong); fixed += ImGui::CalcTextSize(module.c_str()).x; }
+    {
+        const WithFont strong(ui().fonts.strong);
+        fixed += ImGui::CalcTextSize(module.c_str()).x;
+    }
     fixed += ImGui::CalcTextSize(buffer.c_str()).x;
     const bool lettered = state.paneCount() > 1;
     if (lettered) fixed += px(28);
@@ -71,7 +77,8 @@ void drawPaneLabel(AppState& state, int pane, const ImRect& rect, bool alignRigh
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddRectFilled(corner, corner + ImVec2(fixed, px(kHeight)), palette::kOverlay, px(6));
     const bool active = lettered && pane == state.activePane;
-    if (active) list.AddRect(corner, corner + ImVec2(fixed, px(kHeight)), withAlpha(palette::kAccent, 0.8f), px(6), 0, px(1));
+    if (active)
+        list.AddRect(corner, corner + ImVec2(fixed, px(kHeight)), withAlpha(palette::kAccent, 0.8f), px(6), 0, px(1));
 
     ImGui::PushID(pane);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, 0));
@@ -91,9 +98,11 @@ void drawPaneLabel(AppState& state, int pane, const ImRect& rect, bool alignRigh
     ImGui::SameLine();
     if (chip(fmt::format("chip:{}:buffer", pane), buffer, false)) openBufferPicker(pane);
     if (state.bufferPickerWanted && state.activePane == pane) openBufferPicker(pane);
+    if (state.modulePickerWanted && state.activePane == pane) ImGui::OpenPopup("modules");
     {
         const WithFont small(ui().fonts.small);
-        const ImVec2 at(corner.x + fixed - ImGui::CalcTextSize(words.c_str()).x - px(14), std::floor(corner.y + 0.5f * (px(kHeight) - ImGui::GetFontSize())));
+        const ImVec2 at(corner.x + fixed - ImGui::CalcTextSize(words.c_str()).x - px(14),
+                        std::floor(corner.y + 0.5f * (px(kHeight) - ImGui::GetFontSize())));
         list.AddText(at, palette::kDim, words.c_str());
     }
     ImGui::PopStyleVar();
@@ -102,7 +111,7 @@ void drawPaneLabel(AppState& state, int pane, const ImRect& rect, bool alignRigh
     ImGui::SetNextWindowPos(corner + ImVec2(0, px(kHeight + 4)));
     drawBufferPicker(state, pane);
     ImGui::PopID();
-    if (pane + 1 == state.paneCount()) state.bufferPickerWanted = false;
+    if (pane + 1 == state.paneCount()) state.bufferPickerWanted = state.modulePickerWanted = false;
 }
 
 }  // namespace lumi

@@ -20,7 +20,8 @@ std::string shortNumber(float value) {
 }
 
 ImU32 readableOn(const Image8& pixels, Pixel at) {
-    const uint8_t* rgba = &pixels.rgba[4 * (static_cast<size_t>(at.y) * static_cast<size_t>(pixels.extent.width) + static_cast<size_t>(at.x))];
+    const uint8_t* rgba = &pixels.rgba[4 * (static_cast<size_t>(at.y) * static_cast<size_t>(pixels.extent.width) +
+                                            static_cast<size_t>(at.x))];
     const int brightness = (2126 * rgba[0] + 7152 * rgba[1] + 722 * rgba[2]) / 10000;
     return brightness > 118 ? IM_COL32(0, 0, 0, 230) : IM_COL32(255, 255, 255, 230);
 }
@@ -30,10 +31,12 @@ void drawPixelValues(AppState& state, int pane, const ImRect& rect, const ImRect
     const float zoom = state.view.zoom();
     const PaneSnapshot* shown = state.pane(pane);
     const Image* image = state.bufferImage(pane);
-    if (zoom < px(kValuesFromZoom) || !image || !shown || !shown->pixels || image->extent() != shown->pixels->extent) return;
+    if (zoom < px(kValuesFromZoom) || !image || !shown || !shown->pixels || image->extent() != shown->pixels->extent)
+        return;
     const Vec2 low = state.view.pictureFromPane({visible.Min.x - rect.Min.x, visible.Min.y - rect.Min.y});
     const Vec2 high = state.view.pictureFromPane({visible.Max.x - rect.Min.x, visible.Max.y - rect.Min.y});
-    const int x0 = std::max(0, static_cast<int>(std::floor(low.x))), y0 = std::max(0, static_cast<int>(std::floor(low.y)));
+    const int x0 = std::max(0, static_cast<int>(std::floor(low.x))),
+              y0 = std::max(0, static_cast<int>(std::floor(low.y)));
     const int x1 = std::min(image->width() - 1, static_cast<int>(std::floor(high.x)));
     const int y1 = std::min(image->height() - 1, static_cast<int>(std::floor(high.y)));
     ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -49,14 +52,16 @@ void drawPixelValues(AppState& state, int pane, const ImRect& rect, const ImRect
             for (int c = 0; c < lines; ++c) {
                 const std::string text = shortNumber(image->at(c, x, y));
                 const float width = font->CalcTextSizeA(size, 1e9f, 0, text.c_str()).x;
-                const ImVec2 at(std::floor(rect.Min.x + corner.x + 0.5f * (zoom - width)), std::floor(top + size * static_cast<float>(c)));
+                const ImVec2 at(std::floor(rect.Min.x + corner.x + 0.5f * (zoom - width)),
+                                std::floor(top + size * static_cast<float>(c)));
                 list.AddText(font, size, at, colour, text.c_str());
             }
         }
     list.PopClipRect();
 }
 
-void drawPixelFrame(const AppState& state, Pixel pixel, const ImRect& rect, const ImRect& visible, ImU32 colour, bool cross) {
+void drawPixelFrame(const AppState& state, Pixel pixel, const ImRect& rect, const ImRect& visible, ImU32 colour,
+                    bool cross) {
     const Vec2 low = state.view.paneFromPicture({pixel.x, pixel.y});
     const Vec2 high = state.view.paneFromPicture({pixel.x + 1, pixel.y + 1});
     const ImVec2 a = rect.Min + ImVec2(low.x, low.y), b = rect.Min + ImVec2(high.x, high.y);
@@ -84,15 +89,18 @@ void drawColourBar(const PaneSnapshot& shown, const ImRect& visible) {
     if (width < px(80)) return;
     const ImVec2 corner(visible.Max.x - width - px(22), visible.Max.y - px(46));
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(corner - ImVec2(px(10), px(8)), corner + ImVec2(width + px(10), px(32)), palette::kOverlay, px(5));
+    list.AddRectFilled(corner - ImVec2(px(10), px(8)), corner + ImVec2(width + px(10), px(32)), palette::kOverlay,
+                       px(5));
     constexpr int kSteps = 48;
     const auto colour = [&](int i) {
         const Vec3 c = colourMapValue(shown.info.colourMap, static_cast<float>(i) / kSteps);
         return ImGui::ColorConvertFloat4ToU32(ImVec4(c.x, c.y, c.z, 1));
     };
     for (int i = 0; i < kSteps; ++i) {
-        const float x0 = corner.x + width * static_cast<float>(i) / kSteps, x1 = corner.x + width * static_cast<float>(i + 1) / kSteps;
-        list.AddRectFilledMultiColor(ImVec2(x0, corner.y), ImVec2(x1, corner.y + height), colour(i), colour(i + 1), colour(i + 1), colour(i));
+        const float x0 = corner.x + width * static_cast<float>(i) / kSteps,
+                    x1 = corner.x + width * static_cast<float>(i + 1) / kSteps;
+        list.AddRectFilledMultiColor(ImVec2(x0, corner.y), ImVec2(x1, corner.y + height), colour(i), colour(i + 1),
+                                     colour(i + 1), colour(i));
     }
     const WithFont font(ui().fonts.small);
     const std::string low = fmt::format("{:.4g}", shown.info.low), high = fmt::format("{:.4g}", shown.info.high);
@@ -108,7 +116,8 @@ void drawColourBar(const PaneSnapshot& shown, const ImRect& visible) {
 void drawPaneOverlay(AppState& state, int pane, const ImRect& rect, const ImRect& visible) {
     if (visible.GetWidth() < 1) return;
     drawPixelValues(state, pane, rect, visible);
-    if (state.hovered && state.view.zoom() >= px(6)) drawPixelFrame(state, *state.hovered, rect, visible, IM_COL32(255, 255, 255, 150), false);
+    if (state.hovered && state.view.zoom() >= px(6))
+        drawPixelFrame(state, *state.hovered, rect, visible, IM_COL32(255, 255, 255, 150), false);
     if (state.pinned) drawPixelFrame(state, *state.pinned, rect, visible, palette::kAccent, true);
     if (const PaneSnapshot* shown = state.pane(pane)) drawColourBar(*shown, visible);
 }

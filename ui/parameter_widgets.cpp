@@ -34,10 +34,15 @@ void drawFill(const ParameterInfo& info, double value, float width) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const bool hovered = ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(corner, corner + ImVec2(width, height));
     list.AddRectFilled(corner, corner + ImVec2(width, height), hovered ? palette::kHovered : palette::kRaised, px(4));
-    const float filled = width * static_cast<float>(std::clamp(t, 0.0, 1.0));
-    if (filled < 1) return;
-    list.PushClipRect(corner, corner + ImVec2(filled, height), true);
-    list.AddRectFilled(corner, corner + ImVec2(width, height), withAlpha(palette::kAccentDeep, hovered ? 0.95f : 0.75f), px(4));
+    // A range with both signs is filled from zero, so that "unchanged" looks empty.
+    const double zero =
+        info.scale == Scale::Linear && info.min < 0 && info.max > 0 ? -info.min / (info.max - info.min) : 0;
+    const auto from = static_cast<float>(std::min(zero, t)) * width,
+               to = static_cast<float>(std::clamp(std::max(zero, t), 0.0, 1.0)) * width;
+    if (to - from < 1) return;
+    list.PushClipRect(corner + ImVec2(from, 0), corner + ImVec2(to, height), true);
+    list.AddRectFilled(corner, corner + ImVec2(width, height), withAlpha(palette::kAccentDeep, hovered ? 0.95f : 0.75f),
+                       px(4));
     list.PopClipRect();
 }
 
@@ -67,8 +72,9 @@ bool integerWidget(const ParameterInfo& info, int& value, float width) {
     const std::string format = info.unit.empty() ? "%d" : "%d " + info.unit;
     ImGui::SetNextItemWidth(width);
     const bool wide = info.max - info.min > 4096;
-    if (wide) return ImGui::DragInt("##value", &value, std::max(1.0f, 0.01f * static_cast<float>(std::abs(value))), low, high,
-                                    format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+    if (wide)
+        return ImGui::DragInt("##value", &value, std::max(1.0f, 0.01f * static_cast<float>(std::abs(value))), low, high,
+                              format.c_str(), ImGuiSliderFlags_AlwaysClamp);
     drawFill(info, value, width);
     ImGui::PushStyleColor(ImGuiCol_FrameBg, 0);
     ImGui::PushStyleColor(ImGuiCol_FrameBgHovered, 0);
@@ -85,7 +91,14 @@ bool integerWidget(const ParameterInfo& info, int& value, float width) {
 std::optional<std::string> choiceWidget(const ParameterInfo& info, const std::string& value, float width) {
     std::optional<std::string> chosen;
     ImGui::SetNextItemWidth(width);
-    if (!ImGui::BeginCombo("##value", value.c_str(), ImGuiComboFlags_HeightLarge)) return chosen;
+    const bool open =
+        ImGui::BeginCombo("##value", value.c_str(), ImGuiComboFlags_HeightLarge | ImGuiComboFlags_NoArrowButton);
+    if (!open) {
+        const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+        drawIcon(*ImGui::GetWindowDrawList(), Icon::Chevron, ImVec2(high.x - px(13), 0.5f * (low.y + high.y)), px(9),
+                 palette::kDim);
+        return chosen;
+    }
     for (const std::string& option : info.options) {
         if (ImGui::Selectable(option.c_str(), option == value)) chosen = option;
         markItem(info.id + ":" + option);
@@ -114,11 +127,21 @@ void valueWidget(const ParameterInfo& info, float width, ParameterEdit& edit) {
     ParameterValue value = info.value;
     bool changed = false;
     switch (info.type) {
-        case ParameterType::Number: changed = numberWidget(info, std::get<float>(value), width); break;
-        case ParameterType::Integer: changed = integerWidget(info, std::get<int>(value), width); break;
-        case ParameterType::Toggle: changed = toggleSwitch("##value", std::get<bool>(value)); break;
-        case ParameterType::Colour: changed = colourWidget(info, std::get<Vec3>(value), width); break;
-        case ParameterType::Vector: changed = vectorWidget(info, std::get<Vec3>(value), width); break;
+        case ParameterType::Number:
+            changed = numberWidget(info, std::get<float>(value), width);
+            break;
+        case ParameterType::Integer:
+            changed = integerWidget(info, std::get<int>(value), width);
+            break;
+        case ParameterType::Toggle:
+            changed = toggleSwitch("##value", std::get<bool>(value));
+            break;
+        case ParameterType::Colour:
+            changed = colourWidget(info, std::get<Vec3>(value), width);
+            break;
+        case ParameterType::Vector:
+            changed = vectorWidget(info, std::get<Vec3>(value), width);
+            break;
         case ParameterType::Choice:
             if (const auto chosen = choiceWidget(info, std::get<std::string>(value), width)) {
                 value = *chosen;
@@ -141,14 +164,14 @@ ParameterEdit parameterRow(const ParameterInfo& info, bool changed) {
     ParameterEdit edit;
     ImGui::PushID(info.id.c_str());
     const float available = ImGui::GetContentRegionAvail().x, resetSpace = px(24);
-    const float labelWidth = std::floor(0.4f * available), widgetWidth = available - labelWidth - resetSpace;
+    const float labelWidth = std::floor(kLabelShare * available), widgetWidth = available - labelWidth - resetSpace;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float height = ImGui::GetFrameHeight();
     ImGui::InvisibleButton("label", ImVec2(labelWidth - px(6), height));
     const bool labelHovered = ImGui::IsItemHovered();
     ImDrawList& list = *ImGui::GetWindowDrawList();
     if (changed) list.AddCircleFilled(corner + ImVec2(-px(7), 0.5f * height), px(2.5f), palette::kAccent);
-    const std::string label = elided(info.label, labelWidth - px(8));
+    const std::string label = shortened(info.label, labelWidth - px(8));
     list.AddText(corner + ImVec2(0, std::floor(0.5f * (height - ImGui::GetFontSize()))),
                  changed || labelHovered ? palette::kText : palette::kDim, label.c_str());
     if (labelHovered) {
@@ -159,7 +182,8 @@ ParameterEdit parameterRow(const ParameterInfo& info, bool changed) {
     ImGui::SetCursorScreenPos(corner + ImVec2(labelWidth, 0));
     const ImVec2 widgetCorner = ImGui::GetCursorScreenPos();
     valueWidget(info, widgetWidth, edit);
-    markRect(info.id, widgetCorner, widgetCorner + ImVec2(info.type == ParameterType::Toggle ? px(34) : widgetWidth, height));
+    markRect(info.id, widgetCorner,
+             widgetCorner + ImVec2(info.type == ParameterType::Toggle ? px(34) : widgetWidth, height));
     if (changed) {
         ImGui::SameLine();
         ImGui::SetCursorScreenPos(corner + ImVec2(available - px(20), 0.5f * (height - px(20))));
@@ -175,7 +199,9 @@ int parameterRows(AppState& state, const std::string& prefix, const std::string&
     int count = 0;
     for (const ParameterInfo* found : state.document.group(prefix)) {
         const ParameterInfo info = *found;  // the mirror may be refreshed while an edit is applied
-        if (!info.active || without.count(info.id) || (!search.empty() && !matches(search, info.label) && !matches(search, info.id))) continue;
+        if (!info.active || without.count(info.id) ||
+            (!search.empty() && !matches(search, info.label) && !matches(search, info.id)))
+            continue;
         ++count;
         const ParameterEdit edit = parameterRow(info, state.document.changed(info.id));
         if (edit.value) state.set(info.id, *edit.value);

@@ -12,19 +12,25 @@ namespace {
 
 using nlohmann::json;
 
-json vectorJson(const Vec3& v) { return {v.x, v.y, v.z}; }
-Vec3 vectorFrom(const json& j) { return {j.at(0).get<float>(), j.at(1).get<float>(), j.at(2).get<float>()}; }
+json vectorJson(const Vec3& v) {
+    return {v.x, v.y, v.z};
+}
+Vec3 vectorFrom(const json& j) {
+    return {j.at(0).get<float>(), j.at(1).get<float>(), j.at(2).get<float>()};
+}
 
 json bookmarksJson(const AppState::Bookmarks& bookmarks) {
     json list = json::object();
     for (size_t i = 0; i < bookmarks.size(); ++i)
         if (bookmarks[i])
-            list[std::to_string(i + 1)] = {{"eye", vectorJson(bookmarks[i]->eye)}, {"look-at", vectorJson(bookmarks[i]->target)}};
+            list[std::to_string(i + 1)] = {{"eye", vectorJson(bookmarks[i]->eye)},
+                                           {"look-at", vectorJson(bookmarks[i]->target)}};
     return list;
 }
 
 void readInto(AppState& state, const json& root) {
-    for (const json& path : root.value("recent", json::array())) state.recentScenes.emplace_back(path.get<std::string>());
+    for (const json& path : root.value("recent", json::array()))
+        state.recentScenes.emplace_back(path.get<std::string>());
     const json byScene = root.value("bookmarks", json::object());
     for (const auto& [scene, list] : byScene.items())
         for (const auto& [number, camera] : list.items()) {

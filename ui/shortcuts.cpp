@@ -6,12 +6,21 @@ namespace lumi {
 
 namespace {
 
-constexpr KeyChord plain(Key key) { return {key}; }
-constexpr KeyChord control(Key key) { return {key, true}; }
-constexpr KeyChord shift(Key key) { return {key, false, true}; }
-constexpr KeyChord alt(Key key) { return {key, false, false, true}; }
+constexpr KeyChord plain(Key key) {
+    return {key};
+}
+constexpr KeyChord control(Key key) {
+    return {key, true};
+}
+constexpr KeyChord shift(Key key) {
+    return {key, false, true};
+}
+constexpr KeyChord alt(Key key) {
+    return {key, false, false, true};
+}
 
-constexpr auto kPicture = "Picture", kCamera = "Camera", kTime = "Time and rendering", kFiles = "Files", kWindow = "Window";
+constexpr auto kPicture = "Picture", kCamera = "Camera", kTime = "Time and rendering", kFiles = "Files",
+               kWindow = "Window";
 
 constexpr std::array kShortcuts{
     Shortcut{Command::ShowBuffer, plain(Key::Digit1), 9, false, kPicture, "Show buffer 1 to 9 of the list"},
@@ -53,6 +62,7 @@ constexpr std::array kShortcuts{
     Shortcut{Command::Redo, {Key::Z, true, true}, 1, false, kWindow, "Redo"},
     Shortcut{Command::ResetAll, shift(Key::F5), 1, false, kWindow, "Reset all parameters"},
     Shortcut{Command::ToggleUi, plain(Key::Tab), 1, false, kWindow, "Hide or show everything but the picture"},
+    Shortcut{Command::TogglePanel, plain(Key::N), 1, false, kWindow, "Hide or show the side panel"},
     Shortcut{Command::ToggleMessages, control(Key::M), 1, false, kWindow, "Messages"},
     Shortcut{Command::Help, plain(Key::F1), 1, false, kWindow, "This page"},
     Shortcut{Command::Help, shift(Key::Slash), 1, false, kWindow, "This page"},
@@ -74,12 +84,17 @@ constexpr std::array kGestures{
 
 }  // namespace
 
-std::span<const Shortcut> shortcuts() { return kShortcuts; }
-std::span<const Gesture> gestures() { return kGestures; }
+std::span<const Shortcut> shortcuts() {
+    return kShortcuts;
+}
+std::span<const Gesture> gestures() {
+    return kGestures;
+}
 
 std::optional<DispatchedCommand> commandFor(const KeyChord& chord) {
     for (const Shortcut& row : kShortcuts) {
-        if (row.held || row.chord.control != chord.control || row.chord.shift != chord.shift || row.chord.alt != chord.alt)
+        if (row.held || row.chord.control != chord.control || row.chord.shift != chord.shift ||
+            row.chord.alt != chord.alt)
             continue;
         const int index = static_cast<int>(chord.key) - static_cast<int>(row.chord.key);
         if (index >= 0 && index < row.keys) return DispatchedCommand{row.command, index};

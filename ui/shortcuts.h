@@ -10,16 +10,50 @@ namespace lumi {
 /// Everything a key or a button can ask for.
 enum class Command {
     // Picture
-    ShowBuffer, PickBuffer, NextModule, PreviousModule, CycleLayout, SwapPanes, ExposureDown, ExposureUp, Fit, ActualSize,
+    ShowBuffer,
+    PickBuffer,
+    NextModule,
+    PreviousModule,
+    CycleLayout,
+    SwapPanes,
+    ExposureDown,
+    ExposureUp,
+    Fit,
+    ActualSize,
     Loupe,
     // Camera
-    MoveForward, MoveBack, MoveLeft, MoveRight, MoveUp, MoveDown, ToggleOrbit, StoreBookmark, RecallBookmark, CopyCamera,
+    MoveForward,
+    MoveBack,
+    MoveLeft,
+    MoveRight,
+    MoveUp,
+    MoveDown,
+    ToggleOrbit,
+    StoreBookmark,
+    RecallBookmark,
+    CopyCamera,
     // Time
-    PlayTime, PauseRendering, Step, StepBack, Restart,
+    PlayTime,
+    PauseRendering,
+    Step,
+    StepBack,
+    Restart,
     // Files
-    OpenScene, ReloadScene, SavePicture, SaveBuffers, SaveWindow,
+    OpenScene,
+    ReloadScene,
+    SavePicture,
+    SaveBuffers,
+    SaveWindow,
     // Window
-    Undo, Redo, ResetAll, ToggleUi, ToggleMessages, Help, Close, Quit
+    Undo,
+    Redo,
+    ResetAll,
+    ToggleUi,
+    TogglePanel,
+    ToggleMessages,
+    Help,
+    Close,
+    Quit
 };
 
 /// One row of the table that both dispatches keys and fills the help overlay.

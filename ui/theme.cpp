@@ -10,8 +10,8 @@ namespace lumi {
 namespace {
 
 // What labels and file names are written with: Latin with its extensions, Greek, Cyrillic, dashes, arrows, mathematics.
-constexpr ImWchar kGlyphs[] = {0x20,   0x17F,  0x370,  0x3FF,  0x400,  0x45F,  0x2010, 0x2027, 0x2030, 0x205E,
-                               0x2070, 0x209F, 0x2190, 0x21FF, 0x2200, 0x22FF, 0x2300, 0x23CF, 0x25A0, 0x25FF, 0};
+constexpr ImWchar kGlyphs[] = {0x20,   0x17F,  0x370,  0x3FF,  0x400,  0x45F,  0x2010, 0x2027, 0x2030, 0x205E, 0x2070,
+                               0x209F, 0x2190, 0x21FF, 0x2200, 0x22FF, 0x2300, 0x23CF, 0x25A0, 0x25FF, 0};
 
 ImFont* addFont(std::initializer_list<const char*> candidates, float pixels) {
     ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
@@ -30,7 +30,7 @@ ImFont* addFont(std::initializer_list<const char*> candidates, float pixels) {
 
 void setColours(ImVec4* colours) {
     const auto set = [&](int slot, ImU32 colour) { colours[slot] = toVec4(colour); };
-    
+
     using namespace palette;
     set(ImGuiCol_Text, kText);
     set(ImGuiCol_TextDisabled, kFaint);

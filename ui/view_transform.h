@@ -35,7 +35,7 @@ public:
     }
     /// Zooms by `factor` so that what is under `inPane` stays there.
     void zoomAt(Vec2 inPane, float factor) {
-        const Vec2 fixed = pictureFromPane(inPane);
+        const Vec2 fixed = centre_ + (inPane - 0.5f * pane_) / zoom_;  // not by origin(): its rounding would add up
         setZoom(zoom_ * factor);
         centre_ = fixed - (inPane - 0.5f * pane_) / zoom_;
     }

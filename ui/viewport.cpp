@@ -48,8 +48,10 @@ bool wipeHandle(AppState& state, const ImRect& area) {
     const ImVec2 knob(lineX, area.GetCenter().y);
     list.AddCircleFilled(knob, px(11), palette::kOverlay);
     list.AddCircle(knob, px(11), colour, 0, px(1.5f));
-    list.AddTriangleFilled(knob + ImVec2(-px(6.5f), 0), knob + ImVec2(-px(2.5f), -px(4)), knob + ImVec2(-px(2.5f), px(4)), colour);
-    list.AddTriangleFilled(knob + ImVec2(px(6.5f), 0), knob + ImVec2(px(2.5f), px(4)), knob + ImVec2(px(2.5f), -px(4)), colour);
+    list.AddTriangleFilled(knob + ImVec2(-px(6.5f), 0), knob + ImVec2(-px(2.5f), -px(4)),
+                           knob + ImVec2(-px(2.5f), px(4)), colour);
+    list.AddTriangleFilled(knob + ImVec2(px(6.5f), 0), knob + ImVec2(px(2.5f), px(4)), knob + ImVec2(px(2.5f), -px(4)),
+                           colour);
     return hovered || held;
 }
 
@@ -113,9 +115,9 @@ std::vector<PanePicture> drawViewport(AppState& state, const ImRect& area) {
 
     ImGui::SetCursorScreenPos(area.Min);
     ImGui::SetItemAllowOverlap();
-    ImGui::InvisibleButton("picture", area.GetSize(),
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
-                               ImGuiButtonFlags_MouseButtonMiddle);
+    ImGui::InvisibleButton(
+        "picture", area.GetSize(),
+        ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
     ImGui::SetItemAllowOverlap();
     markItem("picture");
     const int under = paneUnderMouse(state, rects);

@@ -28,7 +28,9 @@ bool fly(AppState& state, Camera& camera) {
     const ImGuiIO& io = ImGui::GetIO();
     const bool looking = ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Right);
     if (io.WantTextInput || (io.KeyCtrl && !looking) || io.KeyAlt) return false;
-    const auto axis = [](Command plus, Command minus) { return (held(plus) ? 1.0f : 0.0f) - (held(minus) ? 1.0f : 0.0f); };
+    const auto axis = [](Command plus, Command minus) {
+        return (held(plus) ? 1.0f : 0.0f) - (held(minus) ? 1.0f : 0.0f);
+    };
     const Vec3 direction(axis(Command::MoveRight, Command::MoveLeft), axis(Command::MoveUp, Command::MoveDown),
                          axis(Command::MoveForward, Command::MoveBack));
     if (direction == Vec3(0)) return false;
@@ -53,7 +55,8 @@ bool drag(AppState& state, Camera& camera, const ImRect& pane) {
     }
     if (!ImGui::IsMouseDragging(ImGuiMouseButton_Left, px(kClickRadius))) return false;
     if (io.KeyShift) {
-        const float height = state.snapshot ? static_cast<float>(state.snapshot->extent.height) * state.view.zoom() : pane.GetHeight();
+        const float height =
+            state.snapshot ? static_cast<float>(state.snapshot->extent.height) * state.view.zoom() : pane.GetHeight();
         camera = slide(camera, delta, height);
         return true;
     }

@@ -1,6 +1,5 @@
 #include "ui/widgets.h"
 
-
 #include <algorithm>
 #include <vector>
 
@@ -46,11 +45,13 @@ bool textButton(const char* name, const std::string& text, const Icon* icon, boo
     markItem(name);
     const bool hovered = ImGui::IsItemHovered(), held = ImGui::IsItemActive();
     ImU32 fill = held ? palette::kActive : hovered ? palette::kHovered : palette::kRaised;
-    if (primary) fill = held ? palette::kAccentDeep : hovered ? IM_COL32(56, 122, 202, 255) : IM_COL32(44, 108, 184, 255);
+    if (primary)
+        fill = held ? palette::kAccentDeep : hovered ? IM_COL32(56, 122, 202, 255) : IM_COL32(44, 108, 184, 255);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const float alpha = ImGui::GetStyle().Alpha;
     list.AddRectFilled(box.Min, box.Max, withAlpha(fill, alpha), px(5));
-    if (icon) drawIcon(list, *icon, ImVec2(box.Min.x + px(19), box.GetCenter().y), px(14), withAlpha(palette::kText, alpha));
+    if (icon)
+        drawIcon(list, *icon, ImVec2(box.Min.x + px(19), box.GetCenter().y), px(14), withAlpha(palette::kText, alpha));
     drawTextCentred(list, ImRect(ImVec2(box.Min.x + iconSpace, box.Min.y), box.Max), text.c_str(),
                     withAlpha(primary ? palette::kOnAccent : palette::kText, alpha));
     return clicked;
@@ -61,14 +62,16 @@ int segments(const char* name, std::initializer_list<const char*> texts, int cho
     const float each = std::floor(total / static_cast<float>(texts.size())), height = px(26);
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(corner, corner + ImVec2(each * static_cast<float>(texts.size()), height), palette::kRaised, px(5));
+    list.AddRectFilled(corner, corner + ImVec2(each * static_cast<float>(texts.size()), height), palette::kRaised,
+                       px(5));
     ImGui::PushID(name);
     int clicked = -1, index = 0;
     for (const char* text : texts) {
         ImGui::SetCursorScreenPos(corner + ImVec2(each * static_cast<float>(index), 0));
         if (ImGui::InvisibleButton(text, ImVec2(each, height))) clicked = index;
         markItem(std::string(name) + ":" + text);
-        const ImRect box(ImGui::GetItemRectMin() + ImVec2(px(2), px(2)), ImGui::GetItemRectMax() - ImVec2(px(2), px(2)));
+        const ImRect box(ImGui::GetItemRectMin() + ImVec2(px(2), px(2)),
+                         ImGui::GetItemRectMax() - ImVec2(px(2), px(2)));
         if (index == chosen)
             list.AddRectFilled(box.Min, box.Max, palette::kAccentDeep, px(4));
         else if (ImGui::IsItemHovered())
@@ -80,10 +83,12 @@ int segments(const char* name, std::initializer_list<const char*> texts, int cho
     return clicked;
 }
 
-int iconSegments(const char* name, std::initializer_list<Icon> icons, std::initializer_list<const char*> tips, int chosen) {
+int iconSegments(const char* name, std::initializer_list<Icon> icons, std::initializer_list<const char*> tips,
+                 int chosen) {
     const ImVec2 each(px(34), px(28)), corner = ImGui::GetCursorScreenPos();
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(corner, corner + ImVec2(each.x * static_cast<float>(icons.size()), each.y), palette::kRaised, px(5));
+    list.AddRectFilled(corner, corner + ImVec2(each.x * static_cast<float>(icons.size()), each.y), palette::kRaised,
+                       px(5));
     ImGui::PushID(name);
     int clicked = -1;
     for (size_t i = 0; i < icons.size(); ++i) {
@@ -91,7 +96,8 @@ int iconSegments(const char* name, std::initializer_list<Icon> icons, std::initi
         ImGui::SetCursorScreenPos(corner + ImVec2(each.x * static_cast<float>(i), 0));
         if (ImGui::InvisibleButton(tips.begin()[i], each)) clicked = index;
         markItem(std::string(name) + ":" + tips.begin()[i]);
-        const ImRect box(ImGui::GetItemRectMin() + ImVec2(px(2), px(2)), ImGui::GetItemRectMax() - ImVec2(px(2), px(2)));
+        const ImRect box(ImGui::GetItemRectMin() + ImVec2(px(2), px(2)),
+                         ImGui::GetItemRectMax() - ImVec2(px(2), px(2)));
         const bool hovered = ImGui::IsItemHovered();
         if (index == chosen)
             list.AddRectFilled(box.Min, box.Max, palette::kAccentDeep, px(4));
@@ -135,7 +141,9 @@ void progressBar(float fraction, float width, float height, ImU32 colour) {
     if (to - from >= 1) list.AddRectFilled(corner + ImVec2(from, 0), corner + ImVec2(to, height), colour, rounding);
 }
 
-void dimText(const std::string& text) { ImGui::TextColored(toVec4(palette::kDim), "%s", text.c_str()); }
+void dimText(const std::string& text) {
+    ImGui::TextColored(toVec4(palette::kDim), "%s", text.c_str());
+}
 
 void smallText(const std::string& text, ImU32 colour) {
     const WithFont font(ui().fonts.small);
@@ -187,7 +195,9 @@ void tooltip(const std::string& title, const std::string& text, const std::strin
     ImGui::PopStyleVar();
 }
 
-std::string tipFor(const char* what, Command command) { return std::string(what) + "   " + shortcutText(command); }
+std::string tipFor(const char* what, Command command) {
+    return std::string(what) + "   " + shortcutText(command);
+}
 
 bool searchField(const char* name, std::string& text, const char* hint, float width) {
     ImGui::SetNextItemWidth(width);
@@ -196,19 +206,36 @@ bool searchField(const char* name, std::string& text, const char* hint, float wi
     ImGui::PopStyleVar();
     markItem(name);
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    drawIcon(*ImGui::GetWindowDrawList(), Icon::Search, ImVec2(low.x + px(15), 0.5f * (low.y + high.y)), px(13), palette::kDim);
+    drawIcon(*ImGui::GetWindowDrawList(), Icon::Search, ImVec2(low.x + px(15), 0.5f * (low.y + high.y)), px(13),
+             palette::kDim);
     return changed;
+}
+
+namespace {
+
+/// The first place from `at` on that is not inside a UTF-8 sequence.
+size_t characterBoundary(const std::string& text, size_t at) {
+    while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80) ++at;
+    return at;
+}
+
+}  // namespace
+
+std::string shortened(const std::string& text, float width) {
+    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+    for (size_t kept = text.size() - 1; kept > 0; --kept) {
+        const std::string shorter = text.substr(0, characterBoundary(text, kept)) + "…";
+        if (ImGui::CalcTextSize(shorter.c_str()).x <= width) return shorter;
+    }
+    return "…";
 }
 
 std::string elided(const std::string& text, float width) {
     if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
-    const auto boundary = [&](size_t at) {  // not inside a UTF-8 sequence
-        while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80) ++at;
-        return at;
-    };
     for (size_t removed = 2; removed < text.size(); ++removed) {
         const size_t kept = text.size() - removed;
-        const size_t head = boundary(kept / 2), tail = boundary(text.size() - (kept - kept / 2));
+        const size_t head = characterBoundary(text, kept / 2),
+                     tail = characterBoundary(text, text.size() - (kept - kept / 2));
         const std::string shorter = text.substr(0, head) + "…" + text.substr(tail);
         if (ImGui::CalcTextSize(shorter.c_str()).x <= width) return shorter;
     }

@@ -17,7 +17,8 @@ bool textButton(const char* name, const std::string& text, const Icon* icon = nu
 
 /// Some exclusive choices in one frame, the chosen one raised. Returns the index clicked, or -1.
 int segments(const char* name, std::initializer_list<const char*> texts, int chosen, float width = 0);
-int iconSegments(const char* name, std::initializer_list<Icon> icons, std::initializer_list<const char*> tips, int chosen);
+int iconSegments(const char* name, std::initializer_list<Icon> icons, std::initializer_list<const char*> tips,
+                 int chosen);
 
 /// A switch that slides. True when it was clicked.
 bool toggleSwitch(const char* name, bool& value);
@@ -40,7 +41,11 @@ std::string tipFor(const char* what, Command command);
 /// A field to search with; true when its text changed.
 bool searchField(const char* name, std::string& text, const char* hint, float width = -1);
 
-/// `text` with its middle left out where it is wider than `width`.
+/// `text` with its middle (a path) or its end (a label) left out where it is wider than `width`.
 std::string elided(const std::string& text, float width);
+std::string shortened(const std::string& text, float width);
+
+/// Of a row's width, for its label.
+constexpr float kLabelShare = 0.45f;
 
 }  // namespace lumi

@@ -12,7 +12,8 @@ void HeadlessContext::finish(const std::string& platform, const GlFunctions::Get
     gl_->GetIntegerv(GL_MAJOR_VERSION, &major);
     gl_->GetIntegerv(GL_MINOR_VERSION, &minor);
     const auto* renderer = reinterpret_cast<const char*>(gl_->GetString(GL_RENDERER));
-    description_ = fmt::format("{}, {}, OpenGL {}.{}", platform, renderer ? renderer : "unknown renderer", major, minor);
+    description_ =
+        fmt::format("{}, {}, OpenGL {}.{}", platform, renderer ? renderer : "unknown renderer", major, minor);
 }
 
 std::unique_ptr<HeadlessContext> createHeadlessContext(ContextKind kind) {
@@ -29,10 +30,11 @@ std::unique_ptr<HeadlessContext> createHeadlessContext() {
     try {
         return createOsMesaContext();
     } catch (const Error& error) {
-        throw Error(ErrorKind::NoDisplay, {.what = fmt::format("no OpenGL without a display ({}; {})", eglReason, error.what()),
-                                           .where = "",
-                                           .expected = "the packages libegl1 and libgl1-mesa-dri, or libosmesa6",
-                                           .found = ""});
+        throw Error(ErrorKind::NoDisplay,
+                    {.what = fmt::format("no OpenGL without a display ({}; {})", eglReason, error.what()),
+                     .where = "",
+                     .expected = "the packages libegl1 and libgl1-mesa-dri, or libosmesa6",
+                     .found = ""});
     }
 }
 

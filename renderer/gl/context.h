@@ -30,8 +30,8 @@ private:
     std::string description_;
 };
 
-/// EGL: surfaceless, then each device, then the default display with a pbuffer. Throws Error(NoDisplay) saying what each
-/// attempt met.
+/// EGL: surfaceless, then each device, then the default display with a pbuffer. Throws Error(NoDisplay) saying what
+/// each attempt met.
 std::unique_ptr<HeadlessContext> createEglContext();
 /// Mesa's software renderer. Throws Error(NoDisplay) if the library is missing.
 std::unique_ptr<HeadlessContext> createOsMesaContext();

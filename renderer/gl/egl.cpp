@@ -15,11 +15,12 @@ namespace lumi {
 
 namespace {
 
-#define LUMI_EGL_FUNCTIONS(X)                                                                                       \
-    X(GetProcAddress, GETPROCADDRESS) X(GetDisplay, GETDISPLAY) X(Initialize, INITIALIZE) X(Terminate, TERMINATE)   \
-    X(BindAPI, BINDAPI) X(ChooseConfig, CHOOSECONFIG) X(CreateContext, CREATECONTEXT)                               \
-    X(DestroyContext, DESTROYCONTEXT) X(CreatePbufferSurface, CREATEPBUFFERSURFACE)                                 \
-    X(DestroySurface, DESTROYSURFACE) X(MakeCurrent, MAKECURRENT) X(QueryString, QUERYSTRING)
+#define LUMI_EGL_FUNCTIONS(X)                                                                           \
+    X(GetProcAddress, GETPROCADDRESS)                                                                   \
+    X(GetDisplay, GETDISPLAY) X(Initialize, INITIALIZE) X(Terminate, TERMINATE) X(BindAPI, BINDAPI)     \
+        X(ChooseConfig, CHOOSECONFIG) X(CreateContext, CREATECONTEXT) X(DestroyContext, DESTROYCONTEXT) \
+            X(CreatePbufferSurface, CREATEPBUFFERSURFACE) X(DestroySurface, DESTROYSURFACE)             \
+                X(MakeCurrent, MAKECURRENT) X(QueryString, QUERYSTRING)
 
 struct Egl {
     SharedLibrary library{"libEGL.so.1", "libEGL.so"};
@@ -56,7 +57,8 @@ std::vector<Attempt> attempts(const Egl& egl) {
         EGLint count = 0;
         if (egl.QueryDevices && egl.QueryDevices(static_cast<EGLint>(devices.size()), devices.data(), &count))
             for (EGLint i = 0; i < count; ++i)
-                list.push_back({fmt::format("EGL device {}", i), EGL_PLATFORM_DEVICE_EXT, devices[static_cast<size_t>(i)]});
+                list.push_back(
+                    {fmt::format("EGL device {}", i), EGL_PLATFORM_DEVICE_EXT, devices[static_cast<size_t>(i)]});
     }
     list.push_back({"EGL pbuffer"});
     return list;
@@ -94,9 +96,9 @@ private:
         EGLint count = 0;
         if (!egl_->ChooseConfig(display_, configAttributes, &config, 1, &count) || count == 0)
             fail(attempt, "no configuration for OpenGL");
-        const EGLint contextAttributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3,
-                                            EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                            EGL_NONE};
+        const EGLint contextAttributes[] = {
+            EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
         context_ = egl_->CreateContext(display_, config, EGL_NO_CONTEXT, contextAttributes);
         if (context_ == EGL_NO_CONTEXT) fail(attempt, "no OpenGL 3.3 core context");
         if (!surfaceless) {
@@ -104,7 +106,8 @@ private:
             surface_ = egl_->CreatePbufferSurface(display_, config, surfaceAttributes);
             if (surface_ == EGL_NO_SURFACE) fail(attempt, "no pbuffer");
         }
-        if (!egl_->MakeCurrent(display_, surface_, surface_, context_)) fail(attempt, "the context does not become current");
+        if (!egl_->MakeCurrent(display_, surface_, surface_, context_))
+            fail(attempt, "the context does not become current");
         finish(attempt.name, [this](const char* name) { return reinterpret_cast<void*>(egl_->GetProcAddress(name)); });
     }
 
@@ -128,7 +131,8 @@ private:
 std::unique_ptr<HeadlessContext> createEglContext() {
     const auto egl = std::make_shared<Egl>();
     if (!egl->complete)
-        throw Error(ErrorKind::NoDisplay, {.what = "libEGL.so.1 cannot be opened", .where = "EGL", .expected = "", .found = ""});
+        throw Error(ErrorKind::NoDisplay,
+                    {.what = "libEGL.so.1 cannot be opened", .where = "EGL", .expected = "", .found = ""});
     std::string reasons;
     for (const Attempt& attempt : attempts(*egl)) {
         try {

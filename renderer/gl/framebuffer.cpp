@@ -13,12 +13,16 @@ Framebuffer::Framebuffer(const GlFunctions& gl, Extent2 extent) : gl_(gl), colou
     gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour_.id(), 0);
     if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         gl.DeleteFramebuffers(1, &id_);
-        throw Error(ErrorKind::NoDisplay,
-                    {.what = "OpenGL cannot draw into an RGBA8 texture of this size", .where = "", .expected = "", .found = ""});
+        throw Error(ErrorKind::NoDisplay, {.what = "OpenGL cannot draw into an RGBA8 texture of this size",
+                                           .where = "",
+                                           .expected = "",
+                                           .found = ""});
     }
 }
 
-Framebuffer::~Framebuffer() { gl_.DeleteFramebuffers(1, &id_); }
+Framebuffer::~Framebuffer() {
+    gl_.DeleteFramebuffers(1, &id_);
+}
 
 void Framebuffer::bind() const {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, id_);

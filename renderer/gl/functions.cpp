@@ -22,11 +22,13 @@ void require33(const GlFunctions& gl) {
 }  // namespace
 
 GlFunctions::GlFunctions(const GetProcAddress& getProcAddress) {
-#define LUMI_GL_LOAD(name, type)                                                                       \
-    name = reinterpret_cast<PFNGL##type##PROC>(getProcAddress("gl" #name));                            \
-    if (!name)                                                                                         \
-        throw Error(ErrorKind::NoDisplay, {.what = "the OpenGL driver has no function gl" #name,       \
-                                           .where = "", .expected = "OpenGL 3.3 or newer", .found = ""});
+#define LUMI_GL_LOAD(name, type)                                                                 \
+    name = reinterpret_cast<PFNGL##type##PROC>(getProcAddress("gl" #name));                      \
+    if (!name)                                                                                   \
+        throw Error(ErrorKind::NoDisplay, {.what = "the OpenGL driver has no function gl" #name, \
+                                           .where = "",                                          \
+                                           .expected = "OpenGL 3.3 or newer",                    \
+                                           .found = ""});
     LUMI_GL_FUNCTIONS(LUMI_GL_LOAD)
 #undef LUMI_GL_LOAD
     require33(*this);

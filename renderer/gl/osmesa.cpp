@@ -33,8 +33,17 @@ class OsMesaContext final : public HeadlessContext {
 public:
     OsMesaContext() {
         if (!mesa_.complete) fail("libOSMesa.so.8 cannot be opened");
-        const int attributes[] = {kOsMesaFormat, GL_RGBA, kOsMesaDepthBits, 0, kOsMesaProfile, kOsMesaCoreProfile,
-                                  kOsMesaMajor, 3, kOsMesaMinor, 3, 0};
+        const int attributes[] = {kOsMesaFormat,
+                                  GL_RGBA,
+                                  kOsMesaDepthBits,
+                                  0,
+                                  kOsMesaProfile,
+                                  kOsMesaCoreProfile,
+                                  kOsMesaMajor,
+                                  3,
+                                  kOsMesaMinor,
+                                  3,
+                                  0};
         context_ = mesa_.CreateContextAttribs(attributes, nullptr);
         if (!context_) fail("no OpenGL 3.3 core context");
         if (!mesa_.MakeCurrent(context_, screen_.data(), GL_UNSIGNED_BYTE, kScreenSize, kScreenSize)) {
@@ -55,6 +64,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<HeadlessContext> createOsMesaContext() { return std::make_unique<OsMesaContext>(); }
+std::unique_ptr<HeadlessContext> createOsMesaContext() {
+    return std::make_unique<OsMesaContext>();
+}
 
 }  // namespace lumi

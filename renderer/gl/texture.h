@@ -16,7 +16,8 @@ public:
     GlTexture(const GlTexture&) = delete;
     GlTexture& operator=(const GlTexture&) = delete;
 
-    /// `rgba`: 4 bytes a pixel, rows without gaps; null leaves the contents undefined. Memory is kept if the extent stays.
+    /// `rgba`: 4 bytes a pixel, rows without gaps; null leaves the contents undefined. Memory is kept if the extent
+    /// stays.
     void upload(Extent2 extent, const uint8_t* rgba);
 
     void bind(int unit) const;

@@ -27,6 +27,7 @@ struct PaneSnapshot {
 struct Snapshot {
     FrameNumber frame = -1;
     uint64_t serial = 0;          ///< grows with each publication
+    uint64_t revision = 0;        ///< of the document that it shows: Session::revision() then
     float time = 0;
     uint64_t accumulatedSamples = 0;  ///< per pixel, of the progressive mean; 0 if no module accumulates
     uint64_t targetSamples = 0;   ///< where the progressive mean stops and the engine rests; 0: never

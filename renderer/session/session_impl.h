@@ -35,6 +35,7 @@ struct Session::Impl {
         std::optional<Redo> redo;  ///< what the changes that it takes up invalidate
         int stepsBack = 0;
         bool inspecting = false;  ///< every buffer is wanted
+        uint64_t revision = 0;    ///< of the document
         Save save;
         std::stop_token stop;
     };
@@ -67,7 +68,7 @@ struct Session::Impl {
     void drawFrame(const Work& work);
     void stepBack(const Work& work);
     void saveView(const Work& work);
-    void complete(FrameOutput frame, std::shared_ptr<const Document> document);
+    void complete(FrameOutput frame, const Work& work);
     void publish();
 
     MessageLog& log;
@@ -105,6 +106,7 @@ struct Session::Impl {
     FrameOutput shown;
     std::shared_ptr<const Document> shownDocument;
     uint64_t serial = 0;
+    uint64_t shownRevision = 0;
 
     // Loaders and writers; each says when it is done.
     struct Aside {

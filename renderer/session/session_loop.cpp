@@ -93,6 +93,7 @@ Session::Impl::Work Session::Impl::takeWork() {
     if (!takenDocument || takenRevision != revision) takenDocument = std::make_shared<Document>(*document);
     takenRevision = revision;
     work.document = takenDocument;
+    work.revision = revision;
     return work;
 }
 
@@ -104,6 +105,7 @@ void Session::Impl::perform(const Work& work) {
         case Work::SaveView: saveView(work); break;
         case Work::Display:
             shownDocument = work.document;
+            shownRevision = work.revision;
             {
                 std::lock_guard lock(mutex);
                 states.redescribeLast(work.document);
@@ -124,7 +126,7 @@ void Session::Impl::drawFrame(const Work& work) {
             request.taps[instance] = all.taps;
         }
     std::optional<FrameOutput> frame = engine.advance(request, work.stop);
-    if (frame) return complete(std::move(*frame), work.document);
+    if (frame) return complete(std::move(*frame), work);
     std::lock_guard lock(mutex);
     ++abandoned;
     guarded = true;
@@ -133,9 +135,10 @@ void Session::Impl::drawFrame(const Work& work) {
     pending = std::max(pending, work.redo);
 }
 
-void Session::Impl::complete(FrameOutput frame, std::shared_ptr<const Document> from) {
+void Session::Impl::complete(FrameOutput frame, const Work& work) {
     shown = std::move(frame);
-    shownDocument = std::move(from);
+    shownDocument = work.document;
+    shownRevision = work.revision;
     {
         std::lock_guard lock(mutex);
         states.record(shown, shownDocument);
@@ -217,6 +220,7 @@ void Session::Impl::publish() {
     auto next = std::make_shared<Snapshot>();
     next->frame = shown.number;
     next->serial = ++serial;
+    next->revision = shownRevision;
     next->time = shown.time;
     next->extent = shown.camera.extent;
     next->camera = shown.camera;

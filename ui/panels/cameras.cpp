@@ -19,8 +19,10 @@ void drawSceneCameras(AppState& state) {
         const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
         ImDrawList& list = *ImGui::GetWindowDrawList();
         const float middle = 0.5f * (low.y + high.y);
-        drawIcon(list, Icon::Camera, ImVec2(low.x + px(14), middle), px(13), now == name ? palette::kAccent : palette::kDim);
-        list.AddText(ImVec2(low.x + px(30), std::floor(middle - 0.5f * ImGui::GetFontSize())), palette::kText, name.c_str());
+        drawIcon(list, Icon::Camera, ImVec2(low.x + px(14), middle), px(13),
+                 now == name ? palette::kAccent : palette::kDim);
+        list.AddText(ImVec2(low.x + px(30), std::floor(middle - 0.5f * ImGui::GetFontSize())), palette::kText,
+                     name.c_str());
         ImGui::PopID();
     }
 }
@@ -32,15 +34,21 @@ void drawBookmarks(AppState& state) {
         if (i > 0) ImGui::SameLine(0, px(4));
         const bool stored = state.bookmarks()[static_cast<size_t>(i)].has_value();
         ImGui::PushID(i);
-        if (ImGui::InvisibleButton("bookmark", ImVec2(each, px(26)))) runCommand(state, stored ? Command::RecallBookmark : Command::StoreBookmark, i);
+        if (ImGui::InvisibleButton("bookmark", ImVec2(each, px(26))))
+            runCommand(state, stored ? Command::RecallBookmark : Command::StoreBookmark, i);
         markItem(fmt::format("bookmark:{}", i + 1));
         const ImRect box(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
         ImDrawList& list = *ImGui::GetWindowDrawList();
-        list.AddRectFilled(box.Min, box.Max, stored ? palette::kAccentDeep : ImGui::IsItemHovered() ? palette::kHovered : palette::kRaised, px(4));
+        list.AddRectFilled(box.Min, box.Max,
+                           stored                   ? palette::kAccentDeep
+                           : ImGui::IsItemHovered() ? palette::kHovered
+                                                    : palette::kRaised,
+                           px(4));
         const std::string text = fmt::format("{}", i + 1);
         const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-        list.AddText(ImVec2(std::floor(box.GetCenter().x - 0.5f * size.x), std::floor(box.GetCenter().y - 0.5f * size.y)),
-                     stored ? palette::kOnAccent : palette::kDim, text.c_str());
+        list.AddText(
+            ImVec2(std::floor(box.GetCenter().x - 0.5f * size.x), std::floor(box.GetCenter().y - 0.5f * size.y)),
+            stored ? palette::kOnAccent : palette::kDim, text.c_str());
         if (ImGui::IsItemHovered()) tooltip(stored ? "Go to this bookmark" : "Store the camera here");
         ImGui::PopID();
     }

@@ -7,7 +7,7 @@ namespace lumi {
 
 namespace {
 
-constexpr float kRow = 25;
+constexpr float kRow = 24.5f;
 
 /// A key as a key cap, right edge at `right`.
 void keyCap(ImVec2 rightMiddle, const std::string& text) {
@@ -16,7 +16,8 @@ void keyCap(ImVec2 rightMiddle, const std::string& text) {
     const ImVec2 corner(rightMiddle.x - width, rightMiddle.y - px(10));
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddRectFilled(corner, corner + ImVec2(width, px(20)), IM_COL32(52, 55, 61, 255), px(4));
-    list.AddText(ImVec2(corner.x + px(6), std::floor(rightMiddle.y - 0.5f * ImGui::GetFontSize())), palette::kText, text.c_str());
+    list.AddText(ImVec2(corner.x + px(6), std::floor(rightMiddle.y - 0.5f * ImGui::GetFontSize())), palette::kText,
+                 text.c_str());
 }
 
 void row(float width, const std::string& keys, const char* text) {
@@ -24,7 +25,8 @@ void row(float width, const std::string& keys, const char* text) {
     const float middle = corner.y + 0.5f * px(kRow);
     const float keyRight = corner.x + px(132);
     keyCap(ImVec2(keyRight, middle), keys);
-    ImGui::GetWindowDrawList()->AddText(ImVec2(keyRight + px(12), std::floor(middle - 0.5f * ImGui::GetFontSize())), palette::kText, text);
+    ImGui::GetWindowDrawList()->AddText(ImVec2(keyRight + px(12), std::floor(middle - 0.5f * ImGui::GetFontSize())),
+                                        palette::kText, text);
     ImGui::Dummy(ImVec2(width, px(kRow) - ImGui::GetStyle().ItemSpacing.y));
 }
 
@@ -54,16 +56,21 @@ void drawGroup(const char* group, float width) {
 void drawHelp(AppState& state, const ImRect& area) {
     if (!state.helpOpen) return;
     ImGui::SetNextWindowFocus();
+    beginFixed("help-shade", area, IM_COL32(8, 9, 10, 150), ImVec2(0, 0), ImGuiWindowFlags_NoInputs);
+    endFixed();
+    ImGui::SetNextWindowFocus();
     const bool twoColumns = area.GetWidth() >= px(860);
-    const ImVec2 size(std::min(px(twoColumns ? 900 : 460), area.GetWidth() - px(24)), std::min(px(690), area.GetHeight() - px(24)));
+    const ImVec2 size(std::min(px(twoColumns ? 900 : 460), area.GetWidth() - px(24)),
+                      std::min(px(770), area.GetHeight() - px(24)));
     const ImVec2 corner(std::floor(area.GetCenter().x - 0.5f * size.x), std::floor(area.GetCenter().y - 0.5f * size.y));
-    ImGui::GetBackgroundDrawList()->AddRectFilled(area.Min, area.Max, IM_COL32(0, 0, 0, 0));
     ImGui::SetNextWindowPos(corner);
     ImGui::SetNextWindowSize(size);
     ImGui::PushStyleColor(ImGuiCol_WindowBg, IM_COL32(26, 27, 31, 250));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(24), px(18)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
-    ImGui::Begin("help-overlay", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+    ImGui::Begin("help-overlay", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings);
     markRect("help-overlay", corner, corner + size);
     {
         const WithFont title(ui().fonts.title);

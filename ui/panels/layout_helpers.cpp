@@ -17,7 +17,9 @@ void beginFixed(const char* name, const ImRect& area, ImU32 colour, ImVec2 paddi
     ImGui::PopStyleVar(3);
 }
 
-void endFixed() { ImGui::End(); }
+void endFixed() {
+    ImGui::End();
+}
 
 std::string sceneName(const AppState& state) {
     const Scene* scene = state.document.scene();

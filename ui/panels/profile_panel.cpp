@@ -13,7 +13,7 @@ namespace {
 void row(const char* what, const std::string& value, ImU32 colour = palette::kText) {
     dimText(what);
     const WithFont mono(ui().fonts.mono);
-    ImGui::SameLine(ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(value.c_str()).x);
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(value.c_str()).x - px(6));
     ImGui::TextColored(toVec4(colour), "%s", value.c_str());
 }
 
@@ -25,12 +25,14 @@ void drawStages(const Snapshot& snapshot) {
         const ImVec2 corner = ImGui::GetCursorScreenPos();
         const float width = ImGui::GetContentRegionAvail().x, height = px(22);
         const float filled = width * static_cast<float>(ms / longest);
-        list.AddRectFilled(corner, corner + ImVec2(std::max(filled, px(2)), height - px(3)), withAlpha(palette::kAccentDeep, 0.55f), px(3));
+        list.AddRectFilled(corner, corner + ImVec2(std::max(filled, px(2)), height - px(3)),
+                           withAlpha(palette::kAccentDeep, 0.55f), px(3));
         const float y = std::floor(corner.y + 0.5f * (height - px(3) - ImGui::GetFontSize()));
         list.AddText(ImVec2(corner.x + px(7), y), palette::kText, stage.c_str());
         const WithFont mono(ui().fonts.mono);
         const std::string text = fmt::format("{:.2f} ms", ms);
-        list.AddText(ImVec2(corner.x + width - ImGui::CalcTextSize(text.c_str()).x - px(6), y + px(1)), palette::kText, text.c_str());
+        list.AddText(ImVec2(corner.x + width - ImGui::CalcTextSize(text.c_str()).x - px(6), y + px(1)), palette::kText,
+                     text.c_str());
         ImGui::Dummy(ImVec2(width, height));
     }
     row("Frame", fmt::format("{:.1f} ms", snapshot.frameMs));
@@ -72,9 +74,13 @@ void drawProfilePanel(AppState& state) {
     if (section("Window")) {
         drawUiHistory(state.timing);
         row("UI thread, median", fmt::format("{:.2f} ms", state.timing.median()));
-        row("UI thread, p99", fmt::format("{:.2f} ms", state.timing.p99()), state.timing.p99() < 8 ? palette::kGood : palette::kWarning);
+        row("UI thread, p99", fmt::format("{:.2f} ms", state.timing.p99()),
+            state.timing.p99() < 8 ? palette::kGood : palette::kWarning);
         row("Frame rate", fmt::format("{:.0f} / s", static_cast<double>(ImGui::GetIO().Framerate)));
-        smallText("CPU time of the UI thread a frame, outside OpenGL; the line is the budget of 8 ms.", palette::kFaint);
+        ImGui::PushTextWrapPos(0);
+        smallText("CPU time of the UI thread a frame, outside OpenGL; the line is the budget of 8 ms.",
+                  palette::kFaint);
+        ImGui::PopTextWrapPos();
     }
 }
 

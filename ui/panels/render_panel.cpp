@@ -31,13 +31,17 @@ void drawGroup(AppState& state, const char* title, const std::string& prefix) {
 
 /// Ends that are often wanted, for the module that accumulates.
 void drawTargetButtons(AppState& state) {
-    const std::string instance = state.module(state.activePane);
-    if (!state.document.find(instance + ".max-samples")) return;
+    std::string instance;
+    for (int pane = 0; pane < state.paneCount() && instance.empty(); ++pane)
+        if (state.document.find(state.module(pane) + ".max-samples")) instance = state.module(pane);
+    if (instance.empty()) return;
     constexpr int kTargets[] = {64, 256, 1024, 4096};
-    const bool limited = state.document.text(instance + ".limit") == "true" || state.document.text(instance + ".limit") == "on";
+    const bool limited =
+        state.document.text(instance + ".limit") == "true" || state.document.text(instance + ".limit") == "on";
     int chosen = 0;
     for (int i = 0; i < 4; ++i)
-        if (limited && state.document.number(instance + ".max-samples", 0) == static_cast<float>(kTargets[i])) chosen = i + 1;
+        if (limited && state.document.number(instance + ".max-samples", 0) == static_cast<float>(kTargets[i]))
+            chosen = i + 1;
     const int clicked = segments("target", {"No end", "64", "256", "1024", "4096"}, chosen);
     if (clicked < 0) return;
     std::vector<std::pair<std::string, ParameterValue>> values{{instance + ".limit", clicked > 0}};
@@ -53,11 +57,13 @@ void drawTarget(AppState& state) {
     const auto samples = static_cast<double>(now.accumulatedSamples), target = static_cast<double>(now.targetSamples);
     if (target > 0) {
         const auto fraction = static_cast<float>(samples / target);
-        progressBar(fraction, ImGui::GetContentRegionAvail().x, px(6), fraction >= 1 ? palette::kGood : palette::kAccent);
+        progressBar(fraction, ImGui::GetContentRegionAvail().x, px(6),
+                    fraction >= 1 ? palette::kGood : palette::kAccent);
         const double perFrame = std::max(1.0f, state.document.number("render.spp", 1));
         const double seconds = std::max(0.0, target - samples) / perFrame * now.frameMs * 1e-3;
-        smallText(fraction >= 1 ? fmt::format("{:.0f} samples per pixel: done", samples)
-                                : fmt::format("{:.0f} of {:.0f} samples per pixel, {:.0f} s to go", samples, target, seconds));
+        smallText(fraction >= 1
+                      ? fmt::format("{:.0f} samples per pixel: done", samples)
+                      : fmt::format("{:.0f} of {:.0f} samples per pixel, {:.0f} s to go", samples, target, seconds));
     } else {
         smallText(now.accumulatedSamples ? fmt::format("{:.0f} samples per pixel, no end set", samples)
                                          : fmt::format("Frame {}", now.frame));
@@ -74,7 +80,8 @@ void drawRenderPanel(AppState& state) {
     for (int pane = 0; pane < state.paneCount(); ++pane) {
         const std::string instance = state.module(pane);
         if (!drawn.insert(instance).second || state.document.group(instance + ".").empty()) continue;
-        const std::string title = std::string(findModule(instance).title) + (instance.find('@') == std::string::npos ? "" : "  " + instance);
+        const std::string title =
+            std::string(findModule(instance).title) + (instance.find('@') == std::string::npos ? "" : "  " + instance);
         drawGroup(state, title.c_str(), instance + ".");
     }
     for (const Group& group : kGroups) drawGroup(state, group.title, group.prefix);

@@ -24,8 +24,10 @@ bool sceneRow(const std::string& id, const std::string& title, const std::string
     markItem("scene:" + id);
     ImGui::PopID();
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    if (ImGui::IsItemHovered()) list.AddRectFilled(corner, corner + ImVec2(width, height), IM_COL32(255, 255, 255, 16), px(5));
-    drawIcon(list, Icon::Layers, corner + ImVec2(px(24), 0.5f * height), px(18), ImGui::IsItemHovered() ? palette::kAccent : palette::kDim);
+    if (ImGui::IsItemHovered())
+        list.AddRectFilled(corner, corner + ImVec2(width, height), IM_COL32(255, 255, 255, 16), px(5));
+    drawIcon(list, Icon::Layers, corner + ImVec2(px(24), 0.5f * height), px(18),
+             ImGui::IsItemHovered() ? palette::kAccent : palette::kDim);
     list.AddText(corner + ImVec2(px(48), px(6)), palette::kText, elided(title, width - px(60)).c_str());
     const WithFont small(ui().fonts.small);
     list.AddText(corner + ImVec2(px(48), px(25)), palette::kDim, elided(detail, width - px(60)).c_str());
@@ -50,7 +52,8 @@ bool drawScenes(AppState& state) {
     bool opened = false;
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - px(92));
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(10), px(6)));
-    const bool entered = ImGui::InputTextWithHint("##path", "Path of a .json, .gltf, .glb, .obj, .hdr or .exr file", &path, ImGuiInputTextFlags_EnterReturnsTrue);
+    const bool entered = ImGui::InputTextWithHint("##path", "Path of a .json, .gltf, .glb, .obj, .hdr or .exr file",
+                                                  &path, ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::PopStyleVar();
     markItem("scene-path");
     ImGui::SameLine(0, px(8));
@@ -103,8 +106,11 @@ void drawSceneBrowser(AppState& state, const ImRect& area) {
     ImGui::PushStyleColor(ImGuiCol_WindowBg, IM_COL32(28, 29, 33, 252));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(16), px(14)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
-    ImGui::Begin("scene-browser", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
-    const bool outside = ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsMouseHoveringRect(corner, corner + size, false) &&
+    ImGui::Begin("scene-browser", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings);
+    const bool outside = ImGui::IsMouseClicked(ImGuiMouseButton_Left) &&
+                         !ImGui::IsMouseHoveringRect(corner, corner + size, false) &&
                          ImGui::GetIO().MousePos.y > area.Min.y;
     heading("Open a scene");
     ImGui::SameLine(ImGui::GetWindowWidth() - px(42));
@@ -126,11 +132,15 @@ void drawEmptyPicture(AppState& state, const ImRect& area) {
     }
     beginFixed("empty", area, palette::kBackground, ImVec2(0, 0), ImGuiWindowFlags_NoBackground);
     if (status.loading || state.document.present()) {
-        drawLoading(state, status.loading ? status : LoadStatus{true, 0, "Tracing the first frame", state.document.scene()->path}, area);
+        drawLoading(
+            state,
+            status.loading ? status : LoadStatus{true, 0, "Tracing the first frame", state.document.scene()->path},
+            area);
         endFixed();
         return;
     }
-    const float width = std::min(px(520), area.GetWidth() - px(48)), height = std::min(px(560), area.GetHeight() - px(32));
+    const float width = std::min(px(520), area.GetWidth() - px(48)),
+                height = std::min(px(560), area.GetHeight() - px(32));
     const ImVec2 corner(std::floor(area.GetCenter().x - 0.5f * width), std::floor(area.GetCenter().y - 0.5f * height));
     drawMark(*ImGui::GetWindowDrawList(), corner + ImVec2(px(22), px(24)), px(40));
     ImGui::SetCursorScreenPos(corner + ImVec2(px(56), px(2)));

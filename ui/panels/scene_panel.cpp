@@ -40,7 +40,8 @@ void drawNamed(AppState& state, const char* title, const std::string& kind) {
         drawn = name;
         const std::string label = name.substr(kind.size() + 1);
         ImGui::SetNextItemOpen(false, ImGuiCond_Once);
-        if (ImGui::TreeNodeEx((label + "##" + name).c_str(), ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_FramePadding)) {
+        if (ImGui::TreeNodeEx((label + "##" + name).c_str(),
+                              ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_FramePadding)) {
             markItem(name);
             parameterRows(state, name + ".");
             ImGui::TreePop();
@@ -56,7 +57,8 @@ void drawScenePanel(AppState& state) {
     const Scene* scene = state.document.scene();
     if (section("Cameras")) drawCameras(state);
     if (section("Camera settings", false)) parameterRows(state, "camera.");
-    if (!state.document.group("environment.").empty() && section("Environment", false)) parameterRows(state, "environment.");
+    if (!state.document.group("environment.").empty() && section("Environment", false))
+        parameterRows(state, "environment.");
     drawNamed(state, "Lights", "light");
     drawNamed(state, "Materials", "material");
     if (!state.document.group("scene.").empty() && section("Variant", false)) parameterRows(state, "scene.");

@@ -18,12 +18,18 @@ void drawTabs(AppState& state, const ImRect& area) {
         if (ImGui::InvisibleButton(kTabs[i], ImVec2(width, height))) state.tab = static_cast<PanelTab>(i);
         markItem(std::string("tab:") + kTabs[i]);
         const bool on = static_cast<int>(state.tab) == i;
-        const ImU32 colour = on ? palette::kText : ImGui::IsItemHovered() ? IM_COL32(190, 193, 200, 255) : palette::kFaint;
-        list.AddText(ImVec2(x + px(10), std::floor(area.Min.y + 0.5f * (height - ImGui::GetFontSize()))), colour, kTabs[i]);
-        if (on) list.AddRectFilled(ImVec2(x + px(10), area.Min.y + height - px(3)), ImVec2(x + width - px(10), area.Min.y + height - px(1)), palette::kAccent, px(1));
+        const ImU32 colour = on                       ? palette::kText
+                             : ImGui::IsItemHovered() ? IM_COL32(190, 193, 200, 255)
+                                                      : palette::kFaint;
+        list.AddText(ImVec2(x + px(10), std::floor(area.Min.y + 0.5f * (height - ImGui::GetFontSize()))), colour,
+                     kTabs[i]);
+        if (on)
+            list.AddRectFilled(ImVec2(x + px(10), area.Min.y + height - px(3)),
+                               ImVec2(x + width - px(10), area.Min.y + height - px(1)), palette::kAccent, px(1));
         x += width;
     }
-    list.AddLine(ImVec2(area.Min.x, area.Min.y + height - 0.5f), ImVec2(area.Max.x, area.Min.y + height - 0.5f), palette::kBorder);
+    list.AddLine(ImVec2(area.Min.x, area.Min.y + height - 0.5f), ImVec2(area.Max.x, area.Min.y + height - 0.5f),
+                 palette::kBorder);
     ImGui::SetCursorScreenPos(ImVec2(area.Min.x, area.Min.y + height));
 }
 
@@ -31,20 +37,28 @@ void drawTabs(AppState& state, const ImRect& area) {
 
 void drawSidePanel(AppState& state, const ImRect& area) {
     beginFixed("side", area, palette::kPanel, ImVec2(0, 0));
-    ImGui::GetWindowDrawList()->AddLine(ImVec2(area.Min.x + 0.5f, area.Min.y), ImVec2(area.Min.x + 0.5f, area.Max.y), palette::kBorder);
+    ImGui::GetWindowDrawList()->AddLine(ImVec2(area.Min.x + 0.5f, area.Min.y), ImVec2(area.Min.x + 0.5f, area.Max.y),
+                                        palette::kBorder);
     drawTabs(state, area);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(16), px(8)));
-    ImGui::PushStyleVar(ImGuiStyleVar_ChildBorderSize, 0);
-    ImGui::BeginChild(kTabs[static_cast<int>(state.tab)], ImVec2(0, 0), true, ImGuiWindowFlags_AlwaysVerticalScrollbar);
-    ImGui::PopStyleVar(2);
+    ImGui::BeginChild(kTabs[static_cast<int>(state.tab)], ImVec2(0, 0), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    ImGui::PopStyleVar();
     if (!state.document.present())
         dimText("No scene is open.");
     else
         switch (state.tab) {
-            case PanelTab::View: drawViewPanel(state); break;
-            case PanelTab::Render: drawRenderPanel(state); break;
-            case PanelTab::Scene: drawScenePanel(state); break;
-            case PanelTab::Profile: drawProfilePanel(state); break;
+            case PanelTab::View:
+                drawViewPanel(state);
+                break;
+            case PanelTab::Render:
+                drawRenderPanel(state);
+                break;
+            case PanelTab::Scene:
+                drawScenePanel(state);
+                break;
+            case PanelTab::Profile:
+                drawProfilePanel(state);
+                break;
         }
     ImGui::Dummy(ImVec2(0, px(12)));
     ImGui::EndChild();

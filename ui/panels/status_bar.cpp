@@ -12,10 +12,14 @@ Icon iconOf(Severity severity) {
     return severity == Severity::Error ? Icon::Error : severity == Severity::Warning ? Icon::Warning : Icon::Info;
 }
 ImU32 colourOf(Severity severity) {
-    return severity == Severity::Error ? palette::kError : severity == Severity::Warning ? palette::kWarning : palette::kDim;
+    return severity == Severity::Error     ? palette::kError
+           : severity == Severity::Warning ? palette::kWarning
+                                           : palette::kDim;
 }
 
-std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
+std::string firstLine(const std::string& text) {
+    return text.substr(0, text.find('\n'));
+}
 
 /// Facts about the picture, right-aligned; as many as fit.
 std::string facts(const AppState& state) {
@@ -25,13 +29,9 @@ std::string facts(const AppState& state) {
                        static_cast<double>(100 * state.view.zoom()), s.frameMs, s.raysPerSecond * 1e-6);
 }
 
-}  // namespace
-
-void drawStatusBar(AppState& state, const ImRect& area) {
-    beginFixed("status", area, palette::kBar, ImVec2(0, 0));
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddLine(ImVec2(area.Min.x, area.Min.y + 0.5f), ImVec2(area.Max.x, area.Min.y + 0.5f), palette::kBorder);
+void drawStatusRow(AppState& state, const ImRect& area) {
     const WithFont small(ui().fonts.small);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
     const float y = std::floor(area.GetCenter().y - 0.5f * ImGui::GetFontSize());
     const std::string right = facts(state);
     const float rightWidth = ImGui::CalcTextSize(right.c_str()).x;
@@ -46,13 +46,24 @@ void drawStatusBar(AppState& state, const ImRect& area) {
     const std::vector<Message> messages = state.log.messages();
     if (messages.empty()) {
         list.AddText(ImVec2(area.Min.x + px(14), y), palette::kFaint, "F1 shows all keys");
-    } else {
-        const Message& last = messages.back();
-        drawIcon(list, iconOf(last.severity), ImVec2(area.Min.x + px(20), area.GetCenter().y), px(13), colourOf(last.severity));
-        const std::string text = elided(firstLine(last.text), width - px(60));
-        list.AddText(ImVec2(area.Min.x + px(34), y), hovered ? palette::kText : palette::kDim, text.c_str());
-        if (hovered) tooltip(state.messagesOpen ? "Hide messages" : "Show all messages", "", shortcutText(Command::ToggleMessages));
+        return;
     }
+    const Message& last = messages.back();
+    drawIcon(list, iconOf(last.severity), ImVec2(area.Min.x + px(20), area.GetCenter().y), px(13),
+             colourOf(last.severity));
+    const std::string text = elided(firstLine(last.text), width - px(60));
+    list.AddText(ImVec2(area.Min.x + px(34), y), hovered ? palette::kText : palette::kDim, text.c_str());
+    if (hovered)
+        tooltip(state.messagesOpen ? "Hide messages" : "Show all messages", "", shortcutText(Command::ToggleMessages));
+}
+
+}  // namespace
+
+void drawStatusBar(AppState& state, const ImRect& area) {
+    beginFixed("status", area, palette::kBar, ImVec2(0, 0));
+    ImGui::GetWindowDrawList()->AddLine(ImVec2(area.Min.x, area.Min.y + 0.5f), ImVec2(area.Max.x, area.Min.y + 0.5f),
+                                        palette::kBorder);
+    drawStatusRow(state, area);
     endFixed();
 }
 
@@ -71,7 +82,8 @@ void drawMessages(AppState& state, const ImRect& area) {
     ImGui::BeginChild("rows");
     for (const Message& message : state.log.messages()) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
-        drawIcon(*ImGui::GetWindowDrawList(), iconOf(message.severity), at + ImVec2(px(8), 0.5f * ImGui::GetTextLineHeight()), px(13), colourOf(message.severity));
+        drawIcon(*ImGui::GetWindowDrawList(), iconOf(message.severity),
+                 at + ImVec2(px(8), 0.5f * ImGui::GetTextLineHeight()), px(13), colourOf(message.severity));
         ImGui::SetCursorPosX(px(26));
         ImGui::PushTextWrapPos(0);
         ImGui::TextUnformatted(message.text.c_str());
@@ -85,7 +97,7 @@ void drawMessages(AppState& state, const ImRect& area) {
 
 void drawToast(AppState& state, const ImRect& area) {
     constexpr double kSeconds = 7;
-    static size_t seen = 0;      // of one window, like ImGui's own state
+    static size_t seen = 0;  // of one window, like ImGui's own state
     static double since = -100;
     const std::vector<Message> messages = state.log.messages();
     if (messages.size() != seen) {
@@ -103,8 +115,10 @@ void drawToast(AppState& state, const ImRect& area) {
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     list.AddRectFilled(corner, corner + size, withAlpha(IM_COL32(28, 29, 33, 250), alpha), px(6));
     list.AddRect(corner, corner + size, withAlpha(colourOf(last.severity), 0.6f * alpha), px(6));
-    drawIcon(list, iconOf(last.severity), corner + ImVec2(px(22), 0.5f * size.y), px(16), withAlpha(colourOf(last.severity), alpha));
-    list.AddText(nullptr, 0, corner + ImVec2(px(42), px(11)), withAlpha(palette::kText, alpha), last.text.c_str(), nullptr, width - px(60));
+    drawIcon(list, iconOf(last.severity), corner + ImVec2(px(22), 0.5f * size.y), px(16),
+             withAlpha(colourOf(last.severity), alpha));
+    list.AddText(nullptr, 0, corner + ImVec2(px(42), px(11)), withAlpha(palette::kText, alpha), last.text.c_str(),
+                 nullptr, width - px(60));
 }
 
 }  // namespace lumi

@@ -21,7 +21,8 @@ void drawSceneButton(AppState& state, const ImRect& area, float width) {
     const ImRect box(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
     ImDrawList& list = *ImGui::GetWindowDrawList();
     if (ImGui::IsItemHovered() || state.browserOpen) list.AddRectFilled(box.Min, box.Max, palette::kRaised, px(5));
-    list.AddText(ImVec2(box.Min.x + px(10), std::floor(box.GetCenter().y - 0.5f * ImGui::GetFontSize())), palette::kText, name.c_str());
+    list.AddText(ImVec2(box.Min.x + px(10), std::floor(box.GetCenter().y - 0.5f * ImGui::GetFontSize())),
+                 palette::kText, name.c_str());
     drawIcon(list, Icon::Chevron, ImVec2(box.Max.x - px(15), box.GetCenter().y), px(10), palette::kDim);
     if (ImGui::IsItemHovered()) tooltip(tipFor("Open a scene", Command::OpenScene));
     if (clicked) runCommand(state, Command::OpenScene);
@@ -36,7 +37,8 @@ void drawTransport(AppState& state, const ImRect& area) {
     button("restart", Icon::Restart, "Restart at frame 0", Command::Restart);
     button("step-back", Icon::StepBack, "One frame back", Command::StepBack);
     const bool playing = state.session.playing();
-    button("play", playing ? Icon::Pause : Icon::Play, playing ? "Pause time" : "Play time", Command::PlayTime, playing);
+    button("play", playing ? Icon::Pause : Icon::Play, playing ? "Pause time" : "Play time", Command::PlayTime,
+           playing);
     button("step", Icon::Step, "One frame forward", Command::Step);
     if (state.snapshot) {
         ImGui::SameLine(0, px(8));
@@ -93,8 +95,8 @@ void drawToolbar(AppState& state, const ImRect& area) {
     }
     if (state.document.present()) {
         ImGui::SetCursorScreenPos(ImVec2(area.Min.x + x, area.Min.y + 0.5f * (area.GetHeight() - px(28))));
-        const int clicked = iconSegments("layout", {Icon::Single, Icon::SideBySide, Icon::Wipe}, {"One view", "Side by side", "Wipe"},
-                                         static_cast<int>(state.layout()));
+        const int clicked = iconSegments("layout", {Icon::Single, Icon::SideBySide, Icon::Wipe},
+                                         {"One view", "Side by side", "Wipe"}, static_cast<int>(state.layout()));
         if (clicked >= 0) state.setLayout(static_cast<Layout>(clicked));
     }
     x = right - 3 * icons;
@@ -108,7 +110,8 @@ void drawToolbar(AppState& state, const ImRect& area) {
            Command::PauseRendering, !rendering);
     button("screenshot", Icon::Camera, "Save the view as PNG", Command::SavePicture, false);
     button("help", Icon::Help, "Keys and mouse", Command::Help, state.helpOpen);
-    ImGui::GetWindowDrawList()->AddLine(ImVec2(area.Min.x, area.Max.y - 0.5f), ImVec2(area.Max.x, area.Max.y - 0.5f), palette::kBorder);
+    ImGui::GetWindowDrawList()->AddLine(ImVec2(area.Min.x, area.Max.y - 0.5f), ImVec2(area.Max.x, area.Max.y - 0.5f),
+                                        palette::kBorder);
     endFixed();
 }
 

@@ -19,19 +19,41 @@ void drawPaneChoice(AppState& state) {
     ImGui::Dummy(ImVec2(0, px(2)));
 }
 
+/// Looks like a choice and opens the picker of the pane's label.
+bool pickerRow(const char* name, const char* label, const std::string& value) {
+    const float available = ImGui::GetContentRegionAvail().x, labelWidth = std::floor(kLabelShare * available);
+    const ImVec2 corner = ImGui::GetCursorScreenPos(), size(available - labelWidth - px(24), ImGui::GetFrameHeight());
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const float textY = std::floor(0.5f * (size.y - ImGui::GetFontSize()));
+    list.AddText(corner + ImVec2(0, textY), palette::kDim, label);
+    ImGui::SetCursorScreenPos(corner + ImVec2(labelWidth, 0));
+    const bool clicked = ImGui::InvisibleButton(name, size);
+    markItem(name);
+    const ImRect box(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+    list.AddRectFilled(box.Min, box.Max, ImGui::IsItemHovered() ? palette::kHovered : palette::kRaised, px(4));
+    list.AddText(box.Min + ImVec2(px(8), textY), palette::kText, elided(value, size.x - px(32)).c_str());
+    drawIcon(list, Icon::Chevron, ImVec2(box.Max.x - px(13), box.GetCenter().y), px(9), palette::kDim);
+    ImGui::SetCursorScreenPos(corner + ImVec2(0, size.y + ImGui::GetStyle().ItemSpacing.y));
+    return clicked;
+}
+
 void drawZoom(AppState& state) {
     const float zoom = state.view.zoom();
     smallText(zoom >= 1 ? fmt::format("Zoom {:.4g} : 1", zoom) : fmt::format("Zoom 1 : {:.3g}", 1 / zoom));
-    ImGui::SameLine(ImGui::GetContentRegionAvail().x - px(58));
-    if (iconButton("fit", Icon::Fit, tipFor("Fit the picture", Command::Fit), state.view.fits(), 24)) runCommand(state, Command::Fit);
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - px(76));
+    if (iconButton("fit", Icon::Fit, tipFor("Fit the picture", Command::Fit), state.view.fits(), 24))
+        runCommand(state, Command::Fit);
     ImGui::SameLine(0, px(4));
-    if (iconButton("loupe", Icon::Loupe, tipFor("Loupe under the pointer", Command::Loupe), state.loupe, 24)) runCommand(state, Command::Loupe);
+    if (iconButton("loupe", Icon::Loupe, tipFor("Loupe under the pointer", Command::Loupe), state.loupe, 24))
+        runCommand(state, Command::Loupe);
 }
 
 }  // namespace
 
 void drawViewPanel(AppState& state) {
     drawPaneChoice(state);
+    if (pickerRow("pick-module", "Method", state.module(state.activePane))) state.modulePickerWanted = true;
+    if (pickerRow("pick-buffer", "Buffer", state.buffer(state.activePane))) state.bufferPickerWanted = true;
     if (section("Display")) {
         const std::string prefix = state.viewId(state.activePane, "");
         parameterRows(state, prefix, "", {prefix + "module", prefix + "buffer"});

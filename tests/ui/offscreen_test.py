@@ -1,0 +1,205 @@
+"""Drives `lumiscope view --offscreen` with scripts and checks what the pictures show.
+
+    offscreen_test.py LUMISCOPE FOLDER
+"""
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+
+from pictures import Picture, difference
+
+PROGRAM, FOLDER = sys.argv[1], pathlib.Path(sys.argv[2])
+SMALL = ["--set", "render.width=320", "--set", "render.height=180", "--set", "accumulate.limit=on",
+         "--set", "accumulate.max-samples=4"]
+PICTURE = (20, 160, 900, 660)  # inside the picture area at 1280x800, clear of labels and colour bars
+
+
+def view(name, script, scene="cornell", options=SMALL, code=0):
+    out = FOLDER / name
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir(parents=True)
+    (out / "script.txt").write_text(script)
+    run = subprocess.run([PROGRAM, "view", scene, "--offscreen", "--json", "--script", out / "script.txt", "--out", out, *options],
+                         capture_output=True, text=True, timeout=400)
+    assert run.returncode == code, f"{name}: exit code {run.returncode}, expected {code}\n{run.stderr}"
+    return out, json.loads(run.stdout) if code == 0 else run.stderr
+
+
+def test_buffers_and_wipe():
+    out, report = view("buffers", """
+wait-load
+wait-spp 4
+shot image
+key b
+text normal
+key Enter
+wait-shown
+shot normal
+key 1
+wait-shown
+click layout:Wipe
+click chip:1:module
+click module:accumulate
+click chip:1:buffer
+text normal
+click buffer:normal
+wait-shown
+wait-spp 4
+shot wipe
+drag wipe -200 0
+shot wiped
+click layout:Side by side
+wait-shown
+shot sides
+""")
+    image, normal, wipe, wiped = (Picture(out / f"{n}.png") for n in ("image", "normal", "wipe", "wiped"))
+    assert difference(image, normal, PICTURE) > 15, "another buffer must look different"
+    left, right = (20, 160, 440, 660), (490, 160, 900, 660)
+    assert difference(wipe, image, left) < 4, "left of the wipe is the image"
+    assert difference(wipe, normal, right) < 4, "right of the wipe are the normals"
+    assert difference(wiped, normal, (300, 160, 440, 660)) < 4, "the wipe followed the pointer"
+    sides = Picture(out / "sides.png")
+    assert difference(sides, wipe, PICTURE) > 5, "side by side is another layout"
+    assert report["errors"] == [], report["errors"]
+    assert report["ui_ms"]["p99"] < 8, report["ui_ms"]
+
+
+def test_exposure_parameters_and_undo():
+    out, _ = view("exposure", """
+wait-load
+wait-spp 4
+key tab
+shot plain
+key ]
+key ]
+key ]
+key ]
+wait-shown
+shot brighter
+key ctrl+z
+key ctrl+z
+key ctrl+z
+key ctrl+z
+wait-shown
+shot undone
+key tab
+drag view.0.exposure 30 0
+wait-shown
+shot dragged
+click reset:view.0.exposure
+wait-shown
+key tab
+shot reset
+""")
+    shots = {n: Picture(out / f"{n}.png") for n in ("plain", "brighter", "undone", "dragged", "reset")}
+    whole = (40, 40, 1240, 760)
+    assert shots["brighter"].mean(whole) > 1.15 * shots["plain"].mean(whole), "four quarter stops are a stop"
+    assert difference(shots["undone"], shots["plain"], whole) == 0, "undo goes back to the same picture"
+    assert difference(shots["reset"], shots["plain"], whole) == 0, "reset goes back to the same picture"
+    assert shots["dragged"].mean(PICTURE) > shots["plain"].mean(PICTURE), "the slider brightens"
+
+
+def test_overlays_zoom_and_files():
+    out, report = view("overlays", """
+wait-load
+wait-spp 4
+shot before
+key F1
+shot help
+dump-ui help
+key Esc
+mouse 470 420
+wheel 17
+shot zoom
+key f
+key c
+wait-message Camera copied
+key F12
+wait-message Saved
+drop /nowhere/broken.gltf
+wait-message broken.gltf
+pause 5
+shot error
+size 640 480
+shot small
+size 3840 2160
+scale 2
+shot large
+""")
+    before, help_page = Picture(out / "before.png"), Picture(out / "help.png")
+    assert difference(before, help_page, (250, 60, 900, 700)) > 8, "help covers the picture"
+    items = {item["name"] for item in json.loads((out / "help.json").read_text())["items"]}
+    assert "help-overlay" in items, sorted(items)
+    zoom = Picture(out / "zoom.png")
+    assert difference(before, zoom, PICTURE) > 3, "the wheel zooms"
+    saved = [p for p in out.glob("cornell.accumulate.image.*.png")]
+    assert len(saved) == 1, saved
+    picture = Picture(saved[0])
+    assert (picture.width, picture.height) == (320, 180), (picture.width, picture.height)
+    assert picture.texts, "a screenshot carries the state"
+    error = Picture(out / "error.png")
+    assert difference(before, error, (20, 160, 900, 640)) < 4, "a broken file leaves the scene"
+    assert any("broken.gltf" in text for text in report["errors"]), report["errors"]
+    small, large = Picture(out / "small.png"), Picture(out / "large.png")
+    assert (small.width, small.height, large.width, large.height) == (640, 480, 3840, 2160)
+    assert small.mean((0, 60, 350, 450)) > 3 and large.mean((0, 200, 2800, 2000), 17) > 10, "the picture shows at any size"
+
+
+def test_flying_changes_the_picture_and_bookmarks_bring_it_back():
+    out, _ = view("fly", """
+wait-load
+wait-spp 4
+key tab
+shot start
+key ctrl+1
+hold w
+pause 40
+lift w
+mouse 600 400
+press right
+mouse 500 380
+release right
+wait-shown
+wait-spp 4
+shot flown
+key alt+1
+wait-shown
+wait-spp 4
+shot back
+""")
+    start, flown, back = (Picture(out / f"{n}.png") for n in ("start", "flown", "back"))
+    whole = (40, 40, 1240, 700)
+    assert difference(start, flown, whole) > 4, "the camera moved"
+    assert difference(start, back, whole) < 2, "the bookmark brings the view back"
+
+
+def test_same_script_gives_same_bytes():
+    script = "wait-load\nwait-spp 4\nkey tab\npause 2\nshot picture\n"
+    first, _ = view("bytes-1", script)
+    second, _ = view("bytes-2", script)
+    assert (first / "picture.png").read_bytes() == (second / "picture.png").read_bytes()
+
+
+def test_mistakes_are_named():
+    _, text = view("mistake-1", "wait-load\nshoot a\n", code=3)
+    assert "script.txt:2" in text and "shot" in text, text
+    _, text = view("mistake-2", "wait-load\nclick tab:Vieww\n", code=3)
+    assert "tab:View" in text, text
+    _, text = view("mistake-3", "wait-load\n", scene=str(FOLDER / "none.gltf"), code=3)
+    assert "none.gltf" in text, text
+
+
+if __name__ == "__main__":
+    failures = 0
+    for name, test in list(globals().items()):
+        if not name.startswith("test_"):
+            continue
+        try:
+            test()
+            print(f"passed  {name}", flush=True)
+        except AssertionError as error:
+            failures += 1
+            print(f"FAILED  {name}: {error}", flush=True)
+    sys.exit(1 if failures else 0)
