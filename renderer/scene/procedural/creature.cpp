@@ -1,56 +1,13 @@
 #include <algorithm>
-#include <array>
 
-#include "scene/procedural/generators.h"
+#include "scene/procedural/creature_skeleton.h"
 
 namespace lumi {
 namespace {
 
+using namespace creature;
+
 constexpr uint32_t kBack = 0, kEyes = 1, kPupils = 2, kClaws = 3;
-
-/// Joints of the skeleton, parents first. The spine runs from the tail's tip to the head along +Z.
-enum Joint { kPelvis, kChest, kNeckLow, kNeckHigh, kHead, kTail1, kTail2, kTail3, kTail4, kFirstLeg };
-constexpr int kJointsPerLeg = 3, kLegs = 4, kJoints = kFirstLeg + kJointsPerLeg * kLegs;
-
-struct JointRest {
-    const char* name;
-    int parent;
-    Vec3 position;  ///< in the asset's space at rest, for a creature of length 1
-};
-
-constexpr std::array<JointRest, kFirstLeg> kSpine = {{{"pelvis", -1, {0, 0.46f, -0.12f}},
-                                                      {"chest", kPelvis, {0, 0.47f, 0.12f}},
-                                                      {"neck-low", kChest, {0, 0.56f, 0.27f}},
-                                                      {"neck-high", kNeckLow, {0, 0.70f, 0.34f}},
-                                                      {"head", kNeckHigh, {0, 0.82f, 0.40f}},
-                                                      {"tail-1", kPelvis, {0, 0.45f, -0.28f}},
-                                                      {"tail-2", kTail1, {0, 0.41f, -0.42f}},
-                                                      {"tail-3", kTail2, {0, 0.38f, -0.55f}},
-                                                      {"tail-4", kTail3, {0, 0.37f, -0.67f}}}};
-
-/// Where along the spine curve (0 tail tip, 1 nose) each spine joint acts.
-constexpr std::array<std::pair<int, float>, 9> kSpineOrder = {{{kTail4, 0.10f},
-                                                               {kTail3, 0.20f},
-                                                               {kTail2, 0.30f},
-                                                               {kTail1, 0.40f},
-                                                               {kPelvis, 0.51f},
-                                                               {kChest, 0.64f},
-                                                               {kNeckLow, 0.75f},
-                                                               {kNeckHigh, 0.84f},
-                                                               {kHead, 0.91f}}};
-
-Vec3 legRoot(int leg) {
-    const float side = leg % 2 == 0 ? -1.0f : 1.0f;
-    return leg < 2 ? Vec3(side * 0.095f, 0.42f, 0.14f) : Vec3(side * 0.105f, 0.42f, -0.14f);
-}
-Vec3 legKnee(int leg) {
-    return legRoot(leg) + Vec3((leg % 2 == 0 ? -1 : 1) * 0.02f, -0.19f, leg < 2 ? -0.01f : 0.03f);
-}
-Vec3 legAnkle(int leg) {
-    return legKnee(leg) + Vec3(0, -0.18f, leg < 2 ? 0.01f : -0.03f);
-}
-
-using Influences = std::array<float, kJoints>;
 
 /// A long-necked, long-tailed creature of `length` metres that walks on the spot towards +Z: a skinned mesh over
 /// 21 joints, with one looping gait.
@@ -58,7 +15,7 @@ class Creature final : public Procedural {
 public:
     void describe(ParameterVisitor& v) override {
         describeLength(v, "length", length_, "Length", 0.05, 20, "From nose to tail");
-        v.number("period", period_,
+        v.number("period", gait_.period,
                  {.label = "Period",
                   .min = 0.1,
                   .max = 20,
@@ -66,9 +23,9 @@ public:
                   .help = "Time of one gait cycle",
                   .redo = Redo::Build});
         v.number(
-            "phase", phase_,
+            "phase", gait_.phase,
             {.label = "Phase", .min = 0, .max = 1, .help = "Where in the cycle the gait starts", .redo = Redo::Build});
-        v.number("stride", stride_,
+        v.number("stride", gait_.strideDeg,
                  {.label = "Stride",
                   .min = 0,
                   .max = 45,
@@ -87,8 +44,8 @@ public:
         result.slots = {opaqueSlot("skin", {1, 1, 1}, 0.45f), opaqueSlot("eyes", {0.9f, 0.88f, 0.8f}, 0.1f),
                         opaqueSlot("pupils", {0.01f, 0.01f, 0.012f}, 0.05f),
                         opaqueSlot("claws", {0.12f, 0.09f, 0.07f}, 0.3f)};
-        addSkeleton(result);
-        addGait(result);
+        addSkeleton(result, length_);
+        addGait(result, length_, gait_);
         Mesh mesh;
         std::vector<Influences> influences;
         addBody(mesh, influences);
@@ -106,91 +63,6 @@ public:
     }
 
 private:
-    static Vec3 restPosition(int joint) {
-        if (joint < kFirstLeg) return kSpine[static_cast<size_t>(joint)].position;
-        const int leg = (joint - kFirstLeg) / kJointsPerLeg;
-        const int part = (joint - kFirstLeg) % kJointsPerLeg;
-        return part == 0 ? legRoot(leg) : part == 1 ? legKnee(leg) : legAnkle(leg);
-    }
-    static int parentOf(int joint) {
-        if (joint < kFirstLeg) return kSpine[static_cast<size_t>(joint)].parent;
-        const int leg = (joint - kFirstLeg) / kJointsPerLeg;
-        if ((joint - kFirstLeg) % kJointsPerLeg == 0) return leg < 2 ? kChest : kPelvis;
-        return joint - 1;
-    }
-
-    void addSkeleton(ProceduralResult& result) const {
-        Skin skin;
-        for (int joint = 0; joint < kJoints; ++joint) {
-            Node node;
-            node.name = joint < kFirstLeg ? kSpine[static_cast<size_t>(joint)].name
-                                          : "leg-" + std::to_string(joint - kFirstLeg);
-            node.parent = parentOf(joint);
-            const Vec3 origin = node.parent >= 0 ? restPosition(node.parent) : Vec3(0);
-            node.local.translation = (restPosition(joint) - origin) * length_;
-            result.nodes.push_back(std::move(node));
-            skin.joints.push_back(joint);
-            skin.inverseBind.push_back(Transform{-restPosition(joint) * length_, {1, 0, 0, 0}, Vec3(1)}.matrix());
-        }
-        result.skins.push_back(std::move(skin));
-    }
-
-    /// Every joint swings in sines of the cycle; keys are dense enough for linear interpolation.
-    void addGait(ProceduralResult& result) const {
-        constexpr int kKeys = 24;
-        Animation gait;
-        gait.duration = period_;
-        const auto rotation = [&](int joint, const std::function<Vec3(float)>& eulerDeg) {
-            AnimationChannel channel;
-            channel.node = joint;
-            channel.property = AnimatedProperty::Rotation;
-            channel.components = 4;
-            for (int k = 0; k <= kKeys; ++k) {
-                const float t = static_cast<float>(k % kKeys) / kKeys;
-                const Vec3 e = eulerDeg(2 * kPi * (t + phase_));
-                const Quat q = glm::angleAxis(radians(e.y), Vec3(0, 1, 0)) *
-                               glm::angleAxis(radians(e.x), Vec3(1, 0, 0)) *
-                               glm::angleAxis(radians(e.z), Vec3(0, 0, 1));
-                channel.times.push_back(period_ * static_cast<float>(k) / kKeys);
-                channel.values.insert(channel.values.end(), {q.x, q.y, q.z, q.w});
-            }
-            gait.channels.push_back(std::move(channel));
-        };
-        AnimationChannel bob;
-        bob.node = kPelvis;
-        bob.property = AnimatedProperty::Translation;
-        bob.components = 3;
-        for (int k = 0; k <= kKeys; ++k) {
-            const float w = 2 * kPi * (static_cast<float>(k % kKeys) / kKeys + phase_);
-            const Vec3 p =
-                (restPosition(kPelvis) + Vec3(0.006f * std::sin(w), 0.010f * std::cos(2 * w) - 0.012f, 0)) * length_;
-            bob.times.push_back(period_ * static_cast<float>(k) / kKeys);
-            bob.values.insert(bob.values.end(), {p.x, p.y, p.z});
-        }
-        gait.channels.push_back(std::move(bob));
-        rotation(kPelvis, [](float w) { return Vec3(1.5f * std::cos(2 * w), 4 * std::sin(w), 3 * std::sin(w)); });
-        rotation(kChest, [](float w) { return Vec3(-1.5f * std::cos(2 * w), -7 * std::sin(w), -4 * std::sin(w)); });
-        rotation(kNeckLow, [](float w) { return Vec3(4 * std::sin(2 * w), 4 * std::sin(w + 0.6f), 0); });
-        rotation(kNeckHigh, [](float w) { return Vec3(-3 * std::sin(2 * w + 0.5f), 5 * std::sin(w + 0.9f), 0); });
-        rotation(kHead, [](float w) { return Vec3(-5 * std::sin(2 * w + 0.2f), 4 * std::sin(w), 0); });
-        for (int i = 0; i < 4; ++i)
-            rotation(kTail1 + i, [i](float w) {
-                return Vec3(2 * std::sin(2 * w),
-                            (7 + 3 * static_cast<float>(i)) * std::sin(w - 0.7f * static_cast<float>(i)), 0);
-            });
-        constexpr std::array<float, kLegs> kLead = {0, 0.5f, 0.75f, 0.25f};
-        for (int leg = 0; leg < kLegs; ++leg) {
-            const float lead = 2 * kPi * kLead[static_cast<size_t>(leg)], swing = stride_;
-            const int hip = kFirstLeg + leg * kJointsPerLeg;
-            // The foot goes back on the ground while sin falls and is lifted while it swings forward.
-            const auto lift = [lead](float w) { return std::pow(std::max(0.0f, std::cos(w + lead)), 1.3f); };
-            rotation(hip, [=](float w) { return Vec3(-swing * std::sin(w + lead) - 12 * lift(w), 0, 0); });
-            rotation(hip + 1, [=](float w) { return Vec3(38 * lift(w), 0, 0); });
-            rotation(hip + 2, [=](float w) { return Vec3(swing * 0.8f * std::sin(w + lead) - 18 * lift(w), 0, 0); });
-        }
-        result.animations.push_back(std::move(gait));
-    }
-
     /// Appends a part whose vertices are moved by what `weigh` says for each position.
     static void addSkinned(Mesh& mesh, std::vector<Influences>& influences, const Mesh& part, uint32_t slot,
                            const Vec3& colour, const std::function<Influences(const Vec3&)>& weigh) {
@@ -199,25 +71,6 @@ private:
         tidy(painted);
         append(mesh, painted, slot);
         for (const Vec3& p : painted.positions) influences.push_back(weigh(p));
-    }
-
-    static Influences only(int joint) {
-        Influences w{};
-        w[static_cast<size_t>(joint)] = 1;
-        return w;
-    }
-
-    static Influences alongSpine(float s) {
-        Influences w{};
-        if (s <= kSpineOrder.front().second) return only(kSpineOrder.front().first);
-        for (size_t i = 1; i < kSpineOrder.size(); ++i)
-            if (s <= kSpineOrder[i].second) {
-                const float t = glm::smoothstep(kSpineOrder[i - 1].second, kSpineOrder[i].second, s);
-                w[static_cast<size_t>(kSpineOrder[i - 1].first)] = 1 - t;
-                w[static_cast<size_t>(kSpineOrder[i].first)] = t;
-                return w;
-            }
-        return only(kSpineOrder.back().first);
     }
 
     static std::vector<Vec3> spineCurve(int count) {
@@ -371,7 +224,8 @@ private:
         }
     }
 
-    float length_ = 1.4f, period_ = 1, phase_ = 0, stride_ = 22;
+    float length_ = 1.4f;
+    Gait gait_;
     Vec3 back_{0.10f, 0.36f, 0.34f}, belly_{0.80f, 0.70f, 0.44f}, stripes_{0.03f, 0.14f, 0.20f},
         crest_{0.80f, 0.28f, 0.06f};
     int seed_ = 1;

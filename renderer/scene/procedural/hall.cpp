@@ -67,6 +67,7 @@ public:
 private:
     static constexpr float kStep = 0.16f;       ///< galleries lie one step above the court
     static constexpr float kThickness = 0.46f;  ///< of the arcade walls
+    static constexpr float kReveal = 0.34f;     ///< how far floors reach into the outer walls
     static constexpr float kOverArch = 0.62f;   ///< wall above the crown, up to the next floor
 
     static std::vector<MaterialSlot> slots() {
@@ -93,7 +94,7 @@ private:
         Mesh mesh;
         const float x = halfX(), z = halfZ(), X = x + bay_, Z = z + bay_, in = kThickness * 0.75f;
         append(mesh, flatPatch({-x, 0, z}, {2 * x, 0, 0}, {0, 0, -2 * z}), kFloor);
-        addRing(mesh, x - in, z - in, X, Z, kStep, kFloor);
+        addRing(mesh, x - in, z - in, X + kReveal, Z + kReveal, kStep, kFloor);
         // The step up to the galleries, with a rounded nosing.
         for (int side = 0; side < 4; ++side) {
             const float length = side % 2 == 0 ? 2 * (x - in) : 2 * (z - in), reach = side % 2 == 0 ? z - in : x - in;
@@ -214,7 +215,7 @@ private:
     void addSlab(Placer& placer, float y) const {
         Mesh mesh;
         const float x = halfX(), z = halfZ(), in = kThickness / 2 + 0.02f;
-        addRing(mesh, x - in, z - in, x + bay_, z + bay_, y, kFloor);
+        addRing(mesh, x - in, z - in, x + bay_ + kReveal, z + bay_ + kReveal, y, kFloor);
         for (int side = 0; side < 4; ++side) {
             const float length = side % 2 == 0 ? 2 * (x - in) : 2 * (z - in), reach = side % 2 == 0 ? z - in : x - in;
             append(mesh, cornice(length, 0.26f, 0.16f, false), 0,
