@@ -14,6 +14,7 @@ public:
         describeLength(v, "depth", depth_, "Depth", 0.2, 10, "Of the part that lies");
         describeLength(v, "drop", drop_, "Drop", 0, 3, "Of the part that hangs");
         describeLength(v, "crease", crease_, "Crease", 0, 0.1, "Height of the creases on the table");
+        describeLength(v, "calm", calm_, "Calm", 0, 10, "Width of the middle that lies flat, for things to stand on");
         v.number("folds", folds_,
                  {.label = "Folds", .min = 0, .max = 60, .help = "Across the hanging part", .redo = Redo::Build});
         describeSeed(v, seed_);
@@ -56,10 +57,11 @@ private:
         const float ridgeB = 1 - std::abs(valueNoise(Vec3(x * 0.9f, 4.5f, z * 2.3f - x * 1.1f + warp), seed + 2));
         const float rumple = 0.12f * valueNoise(p * 14.0f, seed + 3);
         const float ridges = std::pow(std::max(0.0f, ridgeA), 7) + 0.7f * std::pow(std::max(0.0f, ridgeB), 8);
-        return crease_ * std::max(0.0f, ridges + rumple);
+        const float loose = glm::smoothstep(0.5f, 0.85f, 2 * std::abs(x) / std::max(calm_, 1e-3f));
+        return crease_ * (loose * std::max(0.0f, ridges) + 0.25f * std::max(0.0f, rumple));
     }
 
-    float width_ = 1.6f, depth_ = 0.9f, drop_ = 0.5f, crease_ = 0.01f, folds_ = 7;
+    float width_ = 1.6f, depth_ = 0.9f, drop_ = 0.5f, crease_ = 0.01f, calm_ = 0.4f, folds_ = 7;
     int seed_ = 1;
 };
 
