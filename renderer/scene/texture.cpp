@@ -31,7 +31,7 @@ int nearestTexel(float coordinate, int count, Wrap wrap) {
     return std::min(static_cast<int>(wrapUnit(coordinate, wrap) * static_cast<float>(count)), count - 1);
 }
 
-Tap linearTap(float coordinate, int count, Wrap wrap) {
+[[gnu::always_inline]] inline Tap linearTap(float coordinate, int count, Wrap wrap) {
     const float x = wrapUnit(coordinate, wrap) * static_cast<float>(count) - 0.5f;
     const float floored = std::floor(x);
     Tap tap{static_cast<int>(floored), static_cast<int>(floored) + 1, x - floored};
@@ -45,7 +45,7 @@ Tap linearTap(float coordinate, int count, Wrap wrap) {
     return tap;
 }
 
-Vec4 texel(const TextureImage& image, const TextureImage::Level& level, int x, int y) {
+[[gnu::always_inline]] inline Vec4 texel(const TextureImage& image, const TextureImage::Level& level, int x, int y) {
     const size_t offset = 4 * (static_cast<size_t>(y) * static_cast<size_t>(level.extent.width) +
                                static_cast<size_t>(x));
     if (!level.floats.empty()) {

@@ -9,10 +9,11 @@
 namespace lumi {
 namespace {
 
-/// The grid that directions are drawn from: half of the image's, between these. Small tables stay in the cache.
-constexpr int kLeastColumns = 512, kMostColumns = 1024;
-
-int gridSize(int texels, int least, int most) { return std::min(texels, std::clamp(texels / 2, least, most)); }
+/// The grid that directions are drawn from is at most this wide and half as high, and coarser where that costs little:
+/// small tables stay in the cache.
+constexpr int kMostColumns = 1024, kLeastColumns = 64;
+/// How much the second moment of a light sample may grow by a coarser grid.
+constexpr double kMostGrowth = 1.2;
 
 /// Index i of the interval of an ascending table (count + 1 entries from 0 to 1) that holds u, never an empty one.
 /// guide[k] is the interval that holds k / count.
@@ -46,11 +47,6 @@ double makeCdf(const float* values, int count, float* cdf) {
     return sum;
 }
 
-float safeLuminance(const Image& image, int x, int y) {
-    const float value = luminance(Vec3(image.at(0, x, y), image.at(1, x, y), image.at(2, x, y)));
-    return value > 0 && std::isfinite(value) ? value : 0;
-}
-
 }  // namespace
 
 void EnvironmentLight::build(const Environment& environment) {
@@ -66,7 +62,7 @@ void EnvironmentLight::build(const Environment& environment) {
         columns_ = rows_ = 0;
     } else if (!sameImage) {
         buildTexels(*image_);
-        buildTables(*image_);
+        buildTables();
     }
     meanLuminance_ = image_ ? imageMeanLuminance_ * scale_ : luminance(constant_);
     black_ = !(meanLuminance_ > 0) || !std::isfinite(meanLuminance_);
@@ -83,57 +79,103 @@ void EnvironmentLight::buildTexels(const Image& image) {
     });
 }
 
-void EnvironmentLight::buildTables(const Image& image) {
-    const int width = image.width(), height = image.height();
-    columns_ = gridSize(width, kLeastColumns, kMostColumns);
-    rows_ = gridSize(height, kLeastColumns / 2, kMostColumns / 2);
-    std::vector<float> weights(static_cast<size_t>(columns_) * static_cast<size_t>(rows_));
-    std::vector<double> rowLuminance(static_cast<size_t>(rows_));
-    parallelRanges(rows_, 16, [&](int64_t begin, int64_t end) {
+/// Importance of the cells of a grid over the image, in proportion to luminance and solid angle.
+struct EnvironmentLight::Grid {
+    int columns = 0, rows = 0;
+    std::vector<double> weight, square;  ///< sums over a cell of the finest grid's weights and of their squares
+    double luminance = 0;                ///< mean over the sphere
+
+    double& at(std::vector<double>& values, int column, int row) const {
+        return values[static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column)];
+    }
+    /// Second moment of the light found by sampling this grid, up to a factor: a cell's weight is spread evenly.
+    double secondMoment() const {
+        double sum = 0;
+        for (size_t i = 0; i < weight.size(); ++i)
+            if (weight[i] > 0) sum += square[i] / weight[i];
+        return sum / static_cast<double>(weight.size());
+    }
+    Grid halved() const {
+        Grid half{columns / 2, rows / 2, {}, {}, luminance};
+        half.weight.assign(weight.size() / 4, 0);
+        half.square.assign(weight.size() / 4, 0);
+        for (int row = 0; row < rows; ++row)
+            for (int column = 0; column < columns; ++column) {
+                const auto from = static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column);
+                half.at(half.weight, column / 2, row / 2) += weight[from];
+                half.at(half.square, column / 2, row / 2) += square[from];
+            }
+        return half;
+    }
+};
+
+EnvironmentLight::Grid EnvironmentLight::finestGrid() const {
+    Grid grid;
+    grid.columns = std::min(width_, kMostColumns);
+    grid.rows = std::min(height_, kMostColumns / 2);
+    const size_t cells = static_cast<size_t>(grid.columns) * static_cast<size_t>(grid.rows);
+    grid.weight.resize(cells), grid.square.resize(cells);
+    const auto light = [&](int x, int y) {
+        const float value = luminance(texels_[static_cast<size_t>(std::clamp(y, 0, height_ - 1)) * static_cast<size_t>(width_) +
+                                              static_cast<size_t>((x + width_) % width_)]);
+        return value > 0 && std::isfinite(value) ? double(value) : 0.0;
+    };
+    std::vector<double> rowLight(static_cast<size_t>(grid.rows)), rowSine(static_cast<size_t>(grid.rows));
+    parallelRanges(grid.rows, 16, [&](int64_t begin, int64_t end) {
         for (int row = static_cast<int>(begin); row < end; ++row) {
-            const int y0 = static_cast<int>(int64_t(row) * height / rows_);
-            const int y1 = std::max(y0 + 1, static_cast<int>(int64_t(row + 1) * height / rows_));
-            const float sine = std::sin(kPi * (static_cast<float>(row) + 0.5f) / static_cast<float>(rows_));
-            double sum = 0;
-            for (int column = 0; column < columns_; ++column) {
-                const int x0 = static_cast<int>(int64_t(column) * width / columns_);
-                const int x1 = std::max(x0 + 1, static_cast<int>(int64_t(column + 1) * width / columns_));
+            const int y0 = static_cast<int>(int64_t(row) * height_ / grid.rows);
+            const int y1 = std::max(y0 + 1, static_cast<int>(int64_t(row + 1) * height_ / grid.rows));
+            const double sine = std::sin(3.14159265358979323846 * (row + 0.5) / grid.rows);
+            rowSine[static_cast<size_t>(row)] = sine * grid.columns;
+            for (int column = 0; column < grid.columns; ++column) {
+                const int x0 = static_cast<int>(int64_t(column) * width_ / grid.columns);
+                const int x1 = std::max(x0 + 1, static_cast<int>(int64_t(column + 1) * width_ / grid.columns));
                 // The cell's own texels, and with a small weight their neighbours, which interpolation mixes in.
                 double own = 0, around = 0;
                 for (int y = y0 - 1; y <= y1; ++y)
-                    for (int x = x0 - 1; x <= x1; ++x) {
-                        const double value = safeLuminance(image, (x + width) % width, std::clamp(y, 0, height - 1));
-                        const bool inside = y >= y0 && y < y1 && x >= x0 && x < x1;
-                        (inside ? own : around) += value;
-                    }
-                const int count = (y1 - y0) * (x1 - x0);
-                const int border = (y1 - y0 + 2) * (x1 - x0 + 2) - count;
-                sum += own / count;
-                weights[static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column)] =
-                    sine * static_cast<float>(0.75 * own / count + 0.25 * around / border);
+                    for (int x = x0 - 1; x <= x1; ++x)
+                        (y >= y0 && y < y1 && x >= x0 && x < x1 ? own : around) += light(x, y);
+                const int count = (y1 - y0) * (x1 - x0), border = (y1 - y0 + 2) * (x1 - x0 + 2) - count;
+                const double weight = sine * (0.75 * own / count + 0.25 * around / border);
+                grid.at(grid.weight, column, row) = weight;
+                grid.at(grid.square, column, row) = weight * weight;
+                rowLight[static_cast<size_t>(row)] += sine * own / count;
             }
-            rowLuminance[static_cast<size_t>(row)] = sum * sine;
         }
     });
+    double sines = 0;
+    for (size_t row = 0; row < rowLight.size(); ++row) grid.luminance += rowLight[row], sines += rowSine[row];
+    grid.luminance /= sines;
+    return grid;
+}
 
+void EnvironmentLight::buildTables() {
+    Grid grid = finestGrid();
+    imageMeanLuminance_ = static_cast<float>(grid.luminance);
+    // Coarsen while the samples stay nearly as good.
+    const double finest = grid.secondMoment();
+    while (grid.columns > kLeastColumns && grid.columns % 2 == 0 && grid.rows % 2 == 0) {
+        Grid half = grid.halved();
+        if (half.secondMoment() > kMostGrowth * finest) break;
+        grid = std::move(half);
+    }
+    columns_ = grid.columns;
+    rows_ = grid.rows;
+    const std::vector<float> weights(grid.weight.begin(), grid.weight.end());
     rowCdf_.assign(static_cast<size_t>(rows_) + 1, 0);
     columnCdf_.assign(static_cast<size_t>(rows_) * static_cast<size_t>(columns_ + 1), 0);
     rowGuide_.resize(static_cast<size_t>(rows_));
     columnGuide_.resize(weights.size());
     std::vector<float> rowWeights(static_cast<size_t>(rows_));
-    double total = 0, sines = 0;
     for (int row = 0; row < rows_; ++row) {
         const auto r = static_cast<size_t>(row);
         rowWeights[r] = static_cast<float>(makeCdf(&weights[r * static_cast<size_t>(columns_)], columns_,
                                                    &columnCdf_[r * static_cast<size_t>(columns_ + 1)]));
         makeGuide(&columnCdf_[r * static_cast<size_t>(columns_ + 1)], columns_,
                   &columnGuide_[r * static_cast<size_t>(columns_)]);
-        total += rowLuminance[r];
-        sines += std::sin(kPi * (row + 0.5) / rows_) * columns_;
     }
     makeCdf(rowWeights.data(), rows_, rowCdf_.data());
     makeGuide(rowCdf_.data(), rows_, rowGuide_.data());
-    imageMeanLuminance_ = static_cast<float>(total / sines);
 }
 
 Vec3 EnvironmentLight::radiance(const Vec3& direction) const {

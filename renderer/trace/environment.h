@@ -29,7 +29,9 @@ public:
 
 private:
     void buildTexels(const Image& image);
-    void buildTables(const Image& image);
+    struct Grid;
+    Grid finestGrid() const;
+    void buildTables();
     Vec3 imageRadiance(Vec2 uv) const;
     Vec3 toImage(const Vec3& world) const { return {cos_ * world.x - sin_ * world.z, world.y, sin_ * world.x + cos_ * world.z}; }
     Vec3 toWorld(const Vec3& d) const { return {cos_ * d.x + sin_ * d.z, d.y, -sin_ * d.x + cos_ * d.z}; }

@@ -119,6 +119,18 @@ void Integrator::findHits(PathBatch& batch, int depth, bool coherent, TraceCount
         batch.rays[row] = path.ray;
         batch.rays[row].id = pcgHash(path.hash + static_cast<uint32_t>(2 * depth));
     }
+    // The last ray of a path only asks whether it meets the sky, if nothing else shines: any hit will do.
+    if (depth == settings_.maxDepth && depth >= needs_.vertexDepths && !scene_.lights.hasEmitters()) {
+        batch.blocked.resize(batch.rays.size());
+        occludedRays(scene_.embree, batch.rays, batch.blocked, Coherence::Incoherent);
+        counts.bounceRays += batch.rays.size();
+        size_t kept = 0;
+        for (size_t row = 0; row < batch.active.size(); ++row)
+            if (!batch.blocked[row]) batch.active[kept++] = batch.active[row];
+        batch.active.resize(kept);
+        batch.hits.assign(kept, RawHit());
+        return;
+    }
     const bool packets = coherent && depth == 0;
     intersectRays(scene_.embree, batch.rays, batch.hits, packets ? Coherence::Coherent : Coherence::Incoherent);
     (depth == 0 ? counts.cameraRays : counts.bounceRays) += batch.rays.size();

@@ -44,8 +44,10 @@ void Lights::build(const PosedScene& posed, const SceneTables& tables) {
         weights.push_back(environment_.meanLuminance() * 4 * kPi * kPi * sqr(radius));
     }
     picks_ = AliasTable(weights);
-    hittable_ = !environment_.black() || !triangles_.empty();
-    for (const BodyRecord& body : tables.bodies) hittable_ |= body.instance != BodyRecord::kNone;
+    hasEmitters_ = false;
+    for (const MaterialRecord& material : tables.materials) hasEmitters_ |= material.emits;
+    for (const BodyRecord& body : tables.bodies) hasEmitters_ |= body.instance != BodyRecord::kNone;
+    hittable_ = !environment_.black() || hasEmitters_;
     for (const Sun& sun : suns_) hittable_ |= sun.oneMinusCos > 0;
     hasDelta_ = !points_.empty();
     for (const Sun& sun : suns_) hasDelta_ |= sun.oneMinusCos <= 0;

@@ -33,6 +33,8 @@ public:
     bool empty() const { return picks_.empty(); }
     /// Can a continued path find light by itself (emitters with a body, the sky)?
     bool hittable() const { return hittable_; }
+    /// Are there surfaces that emit: triangles or bodies?
+    bool hasEmitters() const { return hasEmitters_; }
     /// Is there a light that only light samples find?
     bool hasDelta() const { return hasDelta_; }
 
@@ -96,7 +98,7 @@ private:
     AliasTable picks_;
     EnvironmentLight environment_;
     int environmentEntry_ = -1;
-    bool hittable_ = false, hasDelta_ = false;
+    bool hittable_ = false, hasEmitters_ = false, hasDelta_ = false;
     static constexpr uint32_t kNone = ~0u;
 };
 
