@@ -14,6 +14,7 @@ namespace lumi {
 Session::Impl::Impl(MessageLog& log_) : log(log_), engine(log_, FrameEngine::OnModuleError::ShowRawFrame) {
     lowerWorkerPriority();
     thread = std::jthread([this](std::stop_token quit) { loop(quit); });
+    watcher = std::jthread([this](std::stop_token quit) { watch(quit); });
 }
 
 Session::Impl::~Impl() {
@@ -41,14 +42,27 @@ void Session::Impl::noteChange(Redo redo) {
 }
 
 void Session::Impl::abandonFrame() {
-    // While changes keep coming (a camera is flown) every second frame may finish if it is short, else nothing would
-    // ever be seen.
-    constexpr double kStreamMs = 100, kShortMs = 1000;
     const bool streams = sinceChange.elapsedMs() < kStreamMs;
     sinceChange.restart();
     if (!drawing || frameStop.stop_requested()) return;
-    if (guarded && streams && sinceFrameBegan.elapsedMs() < kShortMs) return;
-    frameStop.request_stop();
+    if (guarded && streams && sinceFrameBegan.elapsedMs() < kShortMs) {
+        heldBack = true;
+        wake.notify_all();
+    } else {
+        frameStop.request_stop();
+    }
+}
+
+void Session::Impl::watch(std::stop_token quit) {
+    std::unique_lock lock(mutex);
+    while (!quit.stop_requested()) {
+        wake.wait(lock, quit, [this] { return heldBack; });
+        wake.wait_for(lock, quit, std::chrono::milliseconds(10), [] { return false; });
+        if (heldBack && (sinceChange.elapsedMs() >= kStreamMs || sinceFrameBegan.elapsedMs() >= kShortMs)) {
+            heldBack = false;
+            if (drawing) frameStop.request_stop();
+        }
+    }
 }
 
 /// Puts a whole document in the present one's place; what that invalidates follows from what differs.

@@ -52,6 +52,7 @@ struct Session::Impl {
     void noteChange(Redo redo);
     void replaceDocument(const Document& next);
     void abandonFrame();
+    void watch(std::stop_token quit);
 
     // session_load.cpp
     void startLoading(const Origin& origin);
@@ -89,6 +90,7 @@ struct Session::Impl {
     bool frameFailed = false;  ///< drawing failed: wait for a change
     std::stop_source frameStop;
     bool drawing = false;  ///< a frame that changes may abandon
+    bool heldBack = false;  ///< a change came in a stream of changes: see kStreamMs
     bool guarded = false;  ///< the frame before was abandoned
     Timer sinceFrameBegan, sinceChange;
     uint64_t abandoned = 0;
@@ -115,7 +117,12 @@ struct Session::Impl {
     };
     std::mutex asideMutex;
     std::list<Aside> asides;
-    std::jthread thread;
+    std::jthread thread, watcher;
+
+    /// While changes keep coming (a camera is flown), less than kStreamMs apart, a frame that follows an abandoned one
+    /// may finish if it takes less than kShortMs, else nothing would ever be seen. Any other frame is given up at once,
+    /// and such a one as soon as the changes pause.
+    static constexpr double kStreamMs = 120, kShortMs = 1000;
 };
 
 }  // namespace lumi

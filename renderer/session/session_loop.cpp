@@ -88,6 +88,7 @@ Session::Impl::Work Session::Impl::takeWork() {
     work.redo = std::exchange(pending, std::nullopt);
     timeEdited = false;
     drawing = newFrame || work.kind == Work::Redraw;
+    heldBack = false;
     sinceFrameBegan.restart();
     // Frames of an unchanged document share it: that keeps the log short.
     if (!takenDocument || takenRevision != revision) takenDocument = std::make_shared<Document>(*document);

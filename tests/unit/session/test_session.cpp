@@ -9,6 +9,8 @@
 
 #include "base/files.h"
 #include "base/timer.h"
+#include "scene/load.h"
+#include "session/export.h"
 #include "session/state_log.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
@@ -113,8 +115,12 @@ TEST_F(SessionTest, AChangeAbandonsTheFrameInFlight) {
     }
     RecordProperty("slowestAbandonMs", std::to_string(slowestMs));
     std::printf("    slowest abandoned frame: %.1f ms\n", slowestMs);
+    // In a stream of changes the frame after an abandoned one may go on, but not for long once the stream ends.
+    for (int change = 0; change < 5; ++change) session.set("render.seed", 20 + change);
     session.setAll({{"render.width", 16}, {"render.height", 12}, {"render.spp", 1}});
+    timer.restart();
     waitFor("small frames", [&] { return session.snapshot()->extent.width == 16; });
+    std::printf("    the last of a stream is seen after %.1f ms\n", timer.elapsedMs());
 }
 
 TEST_F(SessionTest, DisplayChangesDoNotRenderAgain) {
@@ -271,6 +277,24 @@ TEST_F(SessionTest, TwoViewsShowTheSameSamples) {
     EXPECT_EQ(*snapshot->results.at("none"), (*snapshot->signals)[Signal::Noisy]);
 }
 
+/// What `render --replay` does.
+void replayTo(const std::filesystem::path& path, const Replay& replay) {
+    MessageLog log;
+    Document document(loadScene(kCornell, log));
+    document.apply(replay.start);
+    FrameEngine engine(log);
+    StateLog states(replay.scene);
+    const OutputChoice choice = OutputChoice::parse(replay.output, "");
+    const std::string instance = document.view(choice.view).module;
+    const BufferSelection buffers = BufferSelection::parse(choice.buffers, instance, "");
+    for (FrameNumber number = replay.first; number <= replay.last; ++number) {
+        if (const nlohmann::json* values = replay.valuesOf(number)) document.apply(*values);
+        const auto frame = engine.advance({document, number, number == replay.first, buffers.signals, {{instance, buffers.taps}}});
+        states.record(*frame, std::make_shared<Document>(document));
+        if (number == replay.last) exportView(path, *frame, document, choice, states.json(choice.json()));
+    }
+}
+
 TEST_F(SessionTest, SavedPicturesReplay) {
     open();
     TemporaryFolder folder;
@@ -284,7 +308,8 @@ TEST_F(SessionTest, SavedPicturesReplay) {
     for (const char* name : {"shot.png", "shot.exr"}) {
         const Replay replay = readReplay(folder / name);
         EXPECT_EQ(replay.scene.name, "cornell") << name;
-        EXPECT_GE(replay.last, replay.first);
+        replayTo(folder / (std::string("again-") + name), replay);
+        EXPECT_EQ(readFile(folder / name), readFile(folder / (std::string("again-") + name))) << name;
     }
 }
 
