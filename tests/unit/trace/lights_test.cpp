@@ -1,0 +1,212 @@
+// Choosing lights and points of lights: what is drawn agrees with the density that is told.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "math/hash.h"
+#include "math/warp.h"
+#include "support/transport_scene.h"
+#include "trace/spherical_rectangle.h"
+#include "trace/surface.h"
+#include "trace/trace_scene.h"
+
+namespace lumi {
+namespace {
+
+using namespace test;
+
+/// Plain random numbers by counting.
+class Numbers {
+public:
+    explicit Numbers(uint32_t seed) : seed_(seed) {}
+    float one() { return unitFloat(hashCombine(seed_, count_++)); }
+    Vec2 two() {
+        const float a = one();
+        return {a, one()};
+    }
+
+private:
+    uint32_t seed_, count_ = 0;
+};
+
+void bindTo(TraceScene& scene, std::shared_ptr<const PosedScene> posed) {
+    scene.posed = std::move(posed);
+    scene.embree.bind(*scene.posed);
+    scene.tables = makeSceneTables(*scene.posed, scene.embree);
+    scene.lights.build(*scene.posed, scene.tables);
+}
+
+TEST(AliasTable, DrawsInProportionToWeights) {
+    const std::vector<float> weights{0, 1, 5, 0.25f, 0, 2, 1e-3f, 3};
+    const AliasTable table(weights);
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    Numbers numbers(1);
+    std::vector<double> observed(weights.size(), 0), expected(weights.size());
+    const int count = 200000;
+    for (int i = 0; i < count; ++i) ++observed[table.sample(numbers.two())];
+    for (uint32_t i = 0; i < weights.size(); ++i) {
+        EXPECT_NEAR(table.probability(i), weights[i] / total, 1e-6);
+        expected[i] = count * weights[i] / total;
+    }
+    EXPECT_GT(chiSquareTest(observed, expected), 1e-3);
+}
+
+TEST(AliasTable, WithoutWeightIsEmptyAndSpoiledWeightsCountAsNone) {
+    EXPECT_TRUE(AliasTable(std::vector<float>{}).empty());
+    EXPECT_TRUE(AliasTable(std::vector<float>{0, 0}).empty());
+    const AliasTable table(std::vector<float>{-1, std::nanf(""), kInfinity, 2});
+    EXPECT_EQ(table.probability(3), 1);
+    Numbers numbers(2);
+    for (int i = 0; i < 1000; ++i) EXPECT_EQ(table.sample(numbers.two()), 3u);
+}
+
+TEST(SphericalRectangle, SolidAngleAndUniformity) {
+    const Vec3 corner(-0.5f, -0.3f, 0.8f), x(1.1f, 0, 0), y(0, 0.9f, 0);
+    const SphericalRectangle rectangle(Vec3(0), corner, x, y);
+    // Solid angle by brute force over the rectangle's area.
+    double expected = 0;
+    const int n = 400;
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            const Vec3 p = corner + x * ((i + 0.5f) / n) + y * ((j + 0.5f) / n);
+            const double d2 = glm::dot(p, p);
+            expected += 1.1 * 0.9 / (n * n) * 0.8 / (d2 * std::sqrt(d2));
+        }
+    EXPECT_NEAR(rectangle.solidAngle(), expected, 1e-5);
+    // Uniform over solid angle: cells of the rectangle are met in proportion to theirs.
+    const int cells = 8;
+    std::vector<double> observed(cells * cells, 0), wanted(cells * cells, 0);
+    Numbers numbers(3);
+    const int count = 100000;
+    for (int k = 0; k < count; ++k) {
+        const Vec3 p = rectangle.sample(numbers.two()) - corner;
+        ASSERT_NEAR(p.z, 0, 1e-5);
+        const int i = std::clamp(static_cast<int>(p.x / 1.1f * cells), 0, cells - 1);
+        const int j = std::clamp(static_cast<int>(p.y / 0.9f * cells), 0, cells - 1);
+        ++observed[static_cast<size_t>(j * cells + i)];
+    }
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            const Vec3 p = corner + x * ((i + 0.5f) / n) + y * ((j + 0.5f) / n);
+            const double d2 = glm::dot(p, p);
+            wanted[static_cast<size_t>(j * cells / n * cells + i * cells / n)] +=
+                count * (1.1 * 0.9 / (n * n) * 0.8 / (d2 * std::sqrt(d2))) / expected;
+        }
+    EXPECT_GT(chiSquareTest(observed, wanted), 1e-3);
+}
+
+/// Emissive triangles of three instances, one mirrored, one shared; a lamp of each kind.
+TinyScene manyLights() {
+    TinyScene tiny;
+    Material glow = lambert(0);
+    glow.emission = Vec3(2);
+    const int material = tiny.addMaterial(glow);
+    const auto ball = std::make_shared<const Mesh>(facetedSphere(0.4f, 12));
+    tiny.add(ball, material, translation(Vec3(-2, 0, 0)));
+    tiny.add(ball, material, translation(Vec3(0, 0, -2)) * scaling(Vec3(-1, 0.5f, 1.5f)));
+    Light light;
+    light.type = LightType::Rectangle;
+    tiny.addLight(light, lookAt(Vec3(2, 0.5f, 0), Vec3(0)));
+    light.type = LightType::Sphere;
+    light.radius = 0.4f;
+    tiny.addLight(light, translation(Vec3(0, 2, 0)));
+    light.type = LightType::Disk;
+    tiny.addLight(light, lookAt(Vec3(0, 0, 2), Vec3(0)));
+    light.type = LightType::Point;
+    tiny.addLight(light, translation(Vec3(0.3f, -0.5f, 0.2f)));
+    tiny.scene.environment.constant = Vec3(0.2f);
+    return tiny;
+}
+
+TEST(Lights, PickProbabilitiesAreOneTogetherAndCoverEveryEmitter) {
+    TraceScene scene;
+    bindTo(scene, manyLights().pose());
+    double sum = 0;
+    for (uint32_t i = 0; i < scene.lights.count(); ++i) sum += scene.lights.pickProbability(i);
+    EXPECT_NEAR(sum, 1, 1e-4);
+    for (uint32_t instance = 0; instance < 2; ++instance)
+        for (uint32_t t = 0; t < scene.posed->mesh(instance).triangles.size(); ++t)
+            EXPECT_GE(scene.lights.entryOf(instance, t), 0);
+    EXPECT_TRUE(scene.lights.hasDelta());
+    EXPECT_TRUE(scene.lights.hittable());
+}
+
+TEST(Lights, DensityOfHitsIntegratesToTheChanceOfExtendedLights) {
+    // Over all directions from a point that sees every emitter whole: each direction's densities of all lights along it,
+    // blocked or not, add up to 1 less the point light's share; nothing blocks anything here but a closed body's far side.
+    TraceScene scene;
+    bindTo(scene, manyLights().pose());
+    const Vec3 eye(0.1f, 0.05f, 0.1f);
+    Numbers numbers(5);
+    RunningMoments moments;
+    for (int i = 0; i < 100000; ++i) {
+        Vec3 direction = sampleSphere(numbers.two());
+        double density = 0;
+        BatchRay ray;
+        ray.origin = eye, ray.direction = direction;
+        for (int pass = 0; pass < 8; ++pass) {
+            RawHit hit;
+            intersectRays(scene.embree, {&ray, 1}, {&hit, 1}, Coherence::Incoherent);
+            if (!hit.valid()) break;
+            const Vec3 position = ray.origin + ray.direction * hit.distance;
+            const SurfacePoint point = surfacePoint(scene.tables, hit, position, 0);
+            const Surface surface = evaluateSurface(scene.tables, point, -direction, 0);
+            if (surface.body >= 0) {
+                if (surface.frontFace) density += scene.lights.pdfBody(surface.body, eye, direction, surface.position);
+            } else {
+                density += scene.lights.pdfTriangle(point.instance, point.primitive, eye, direction, surface.position,
+                                                    surface.outwardNormal);
+            }
+            ray.origin = offsetOrigin(surface.position, -surface.geometricNormal, surface.offset + 1e-3f);
+        }
+        moments.add(density / pdfSphere());
+    }
+    // The sky is the last entry, and the point light before it has no density.
+    const auto count = static_cast<uint32_t>(scene.lights.count());
+    const double expected = 1.0 - scene.lights.pickProbability(count - 1) - scene.lights.pickProbability(count - 2);
+    EXPECT_NEAR(moments.mean(), expected, 4.5 * std::sqrt(moments.meanVariance()));
+    EXPECT_LT(std::sqrt(moments.meanVariance()), 0.02);
+}
+
+TEST(Lights, SamplesCarryTheDensityOfTheirHit) {
+    TraceScene scene;
+    bindTo(scene, manyLights().pose());
+    const Vec3 eye(0.1f, 0.05f, 0.1f);
+    Numbers numbers(6);
+    int compared = 0;
+    for (int i = 0; i < 4000; ++i) {
+        LightSample light;
+        const Vec2 pick = numbers.two(), u = numbers.two();
+        if (!scene.lights.sample(eye, pick, u, light) || !light.hittable || std::isinf(light.distance)) continue;
+        BatchRay ray;
+        ray.origin = eye, ray.direction = light.direction;
+        RawHit hit;
+        intersectRays(scene.embree, {&ray, 1}, {&hit, 1}, Coherence::Incoherent);
+        if (!hit.valid() || hit.distance < light.distance * 0.999f) continue;  // the far side of a ball
+        EXPECT_NEAR(hit.distance, light.distance, 1e-3f * light.distance);
+        const SurfacePoint point = surfacePoint(scene.tables, hit, eye + light.direction * hit.distance, 0);
+        const Surface s = evaluateSurface(scene.tables, point, -light.direction, 0);
+        const float density =
+            s.body >= 0 ? scene.lights.pdfBody(s.body, eye, light.direction, s.position)
+                        : scene.lights.pdfTriangle(point.instance, point.primitive, eye, light.direction, s.position,
+                                                   s.outwardNormal);
+        EXPECT_NEAR(density, light.pdf, 0.02f * light.pdf);
+        EXPECT_LT(glm::distance(s.emitted, light.radiance), 1e-5f);
+        ++compared;
+    }
+    EXPECT_GT(compared, 500);
+}
+
+TEST(Lights, NoneIsEmpty) {
+    TraceScene scene;
+    TinyScene tiny;
+    tiny.add(floorMesh(), lambert(1));
+    bindTo(scene, tiny.pose());
+    LightSample light;
+    EXPECT_TRUE(scene.lights.empty());
+    EXPECT_FALSE(scene.lights.sample(Vec3(0), Vec2(0.5f), Vec2(0.5f), light));
+    EXPECT_FALSE(scene.lights.hittable());
+}
+
+}  // namespace
+}  // namespace lumi
