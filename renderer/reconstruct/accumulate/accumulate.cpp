@@ -50,7 +50,8 @@ void AccumulateModule::describe(ParameterVisitor& v) {
                    .max = 1 << 20,
                    .scale = Scale::Log,
                    .unit = "spp",
-                   .help = "The mean is complete with the frame that reaches this many samples a pixel"});
+                   .help = "The mean is complete with the frame that reaches this many samples a pixel; one that has more "
+                           "already is complete, and keeps them until it starts again"});
     });
     v.choice("reset", reset_,
              {.label = "Start again on",
