@@ -146,12 +146,19 @@ void Document::configure(const std::string& instance, Module& module) const {
     }
 }
 
+bool Document::cameraMoves() const {
+    const SceneCamera& camera = edited_->cameras[static_cast<size_t>(camera_)];
+    return camera.node >= 0 || camera.keys.size() > 1;
+}
+
 Redo Document::set(const std::string& id, const ParameterValue& value, const std::string& where) {
     for (const DocumentFields::Group& group : DocumentFields::groups(*this, id)) {
         if (id.compare(0, group.prefix.size(), group.prefix) != 0) continue;
         const std::vector<ParameterInfo> before = listParameters(group.describe);
         const Redo redo = setParameter(group.describe, id, value, where);
-        if (id != "camera.select" && sameValues(before, listParameters(group.describe))) return Redo::Display;  // nothing new
+        const bool fixes = group.prefix == "camera." && id != "camera.jitter" && cameraMoves();
+        if (id != "camera.select" && !fixes && sameValues(before, listParameters(group.describe)))
+            return Redo::Display;  // nothing new
         group.commit(*this, id.substr(group.prefix.size()), value, where);
         return redo;
     }
@@ -210,6 +217,8 @@ json Document::difference(const Document& from, const Document& to) {
     }
     if (from.jitter_ != to.jitter_) changes["camera.jitter"] = toJson(to.get("camera.jitter"));
 
+    const bool otherSky = from.environmentDigest_ != to.environmentDigest_ ||
+                          from.edited_->environment.file != to.edited_->environment.file;
     std::map<std::string, ParameterValue> before;
     const bool sameScene = from.edited_ == to.edited_;
     for (const DocumentFields::Group& group : DocumentFields::groups(to, "")) {
@@ -217,15 +226,31 @@ json Document::difference(const Document& from, const Document& to) {
         for (const ParameterInfo& info : from.list(group.prefix)) before[info.id] = info.value;
         for (const ParameterInfo& info : listParameters(group.describe)) {
             const auto old = before.find(info.id);
-            if (old == before.end() || old->second != info.value) changes[info.id] = toJson(info.value);
+            // A sky that is read, or put back, brings its own scale and rotation.
+            const bool brought = otherSky && group.prefix == "environment.";
+            if (brought || old == before.end() || old->second != info.value) changes[info.id] = toJson(info.value);
         }
     }
+    if (otherSky && to.environmentDigest_.empty()) changes["environment.file"] = "";  // the scene's own
+    addInstancesOf(from, to, changes);
     return changes;
+}
+
+/// Parameters of instances that `from` alone has set.
+void Document::addInstancesOf(const Document& from, const Document& to, json& changes) {
+    for (const auto& [instance, values] : from.instances_) {
+        if (to.instances_.count(instance)) continue;
+        const std::vector<ParameterInfo> goal = to.list(instance + ".");
+        for (const auto& [name, value] : values)
+            for (const ParameterInfo& info : goal)
+                if (info.id == instance + '.' + name && info.value != value) changes[info.id] = toJson(info.value);
+    }
 }
 
 void Document::apply(const json& values, const std::string& where) {
     std::vector<std::string> ids;
-    for (const auto& [id, value] : values.items()) ids.push_back(id);
+    for (const auto& [id, value] : values.items())
+        if (id != kEnvironmentDigest) ids.push_back(id);
     std::stable_sort(ids.begin(), ids.end(),
                      [](const std::string& a, const std::string& b) { return setOrder(a) < setOrder(b); });
     for (const std::string& id : ids) {
@@ -237,6 +262,10 @@ void Document::apply(const json& values, const std::string& where) {
         }
         if (!known) throwUnknownId(*this, id, where);
     }
+    const auto digest = values.find(kEnvironmentDigest);
+    if (digest != values.end() && *digest != environmentDigest_)
+        throwBadInput({"the sky changed since the image was made", edited_->environment.file,
+                       "content " + (digest->is_string() ? digest->get<std::string>() : digest->dump()), environmentDigest_});
 }
 
 }  // namespace lumi

@@ -73,6 +73,8 @@ public:
     Redo setText(const std::string& id, const std::string& text, const std::string& where = "");
     /// Takes the sky of another document of the same scene.
     void adoptEnvironment(const Document& other);
+    /// Content digest of the image that `environment.file` read; empty while the sky is the scene's own.
+    const std::string& environmentDigest() const { return environmentDigest_; }
     void setTime(float seconds) { time_ = seconds; }
     ParameterValue get(const std::string& id) const;
     ParameterValue initial(const std::string& id) const;  ///< before any change: what "reset" goes back to
@@ -83,11 +85,20 @@ public:
     nlohmann::json changedValues() const;
     /// What turns `from` into `to`, two documents of one scene, in the same form.
     static nlohmann::json difference(const Document& from, const Document& to);
-    /// Sets every value of {"id": value}, in an order in which none undoes another.
+    /// Sets every value of {"id": value}, in an order in which none undoes another. A relative `environment.file` that
+    /// is not there is looked for beside the file `where`. With kEnvironmentDigest among the values, Error(BadInput) if
+    /// the sky's image has another content.
     void apply(const nlohmann::json& values, const std::string& where = "");
+
+    /// Beside `environment.file` in a state: environmentDigest(). No parameter.
+    static constexpr const char* kEnvironmentDigest = "environment.digest";
 
 private:
     friend class DocumentFields;
+    /// Does the camera move by itself, so that an edit to its present value fixes it?
+    bool cameraMoves() const;
+    static void addInstancesOf(const Document& from, const Document& to, nlohmann::json& changes);
+
     struct Names {
         std::vector<std::string> materials, lights, cameras;
     };
@@ -106,7 +117,7 @@ private:
     float time_ = 0;
     float sceneRadius_ = 0;
     int sceneIndex_ = -1;
-    std::string sceneVariant_;
+    std::string sceneVariant_, environmentDigest_;
     std::map<std::string, Values> instances_;  ///< what was set, by instance
 };
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <filesystem>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "image/hdr.h"
 #include "reconstruct/catalog.h"
 #include "session/renaming_visitor.h"
@@ -131,6 +133,21 @@ Scene& DocumentFields::edit(Document& document) {
 
 void Document::adoptEnvironment(const Document& other) {
     DocumentFields::edit(*this).environment = other.edited_->environment;
+    environmentDigest_ = other.environmentDigest_;
+}
+
+/// Reads the image that `sky` names; without a name it becomes the scene's own sky.
+void DocumentFields::readSky(Document& document, Environment& sky, const std::string& where) {
+    if (sky.file.empty()) {
+        sky = document.loaded_->environment;
+        document.environmentDigest_.clear();
+        return;
+    }
+    std::filesystem::path path = sky.file;
+    const std::filesystem::path beside = std::filesystem::path(where).parent_path() / path;
+    if (!std::filesystem::exists(path) && std::filesystem::exists(beside)) path = beside;
+    sky.image = std::make_shared<Image>(loadImage(path));
+    document.environmentDigest_ = digest(readFile(path));
 }
 
 void DocumentFields::addScene(const Document& document, const std::string& filter, std::vector<Group>& groups) {
@@ -166,9 +183,8 @@ void DocumentFields::addScene(const Document& document, const std::string& filte
                               });
                               copy->describe(renamed);
                           },
-                          [copy](Document& d, const std::string& name, const auto&, const auto&) {
-                              if (name == "file" && copy->file.empty()) *copy = d.loaded_->environment;
-                              else if (name == "file") copy->image = std::make_shared<Image>(loadImage(copy->file));
+                          [copy](Document& d, const std::string& name, const auto&, const std::string& where) {
+                              if (name == "file") readSky(d, *copy, where);
                               edit(d).environment = *copy;
                           },
                           true});

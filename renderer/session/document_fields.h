@@ -31,6 +31,7 @@ private:
     static void addViews(const Document&, const std::string& filter, std::vector<Group>&);
     static void addInstances(const Document&, const std::string& filter, std::vector<Group>&);
     static Scene& edit(Document&);
+    static void readSky(Document&, Environment& sky, const std::string& where);
 };
 
 /// Throws Error(Usage) unless a view of `instance` can show `buffer`.

@@ -2,7 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "image/exr.h"
 #include "support/expect_error.h"
+#include "support/temporary_folder.h"
 #include "support/tiny_scene.h"
 
 namespace lumi::test {
@@ -179,6 +181,59 @@ TEST(Document, DifferencesLeadFromOneToTheOther) {
     EXPECT_TRUE(Document::difference(moved, b).empty()) << Document::difference(moved, b).dump();
     EXPECT_EQ(moved.camera(), b.camera());
     EXPECT_EQ(moved.scene()->lights[0].power, 1);
+}
+
+TEST(Document, AnEditToThePresentValueFixesACameraThatMoves) {
+    Document document(movingScene());
+    const Vec3 eye = document.camera().eye;
+    document.set("camera.eye", eye);
+    document.setTime(1);
+    EXPECT_EQ(document.camera().eye, eye);
+    Document again(document.loadedScene());
+    again.apply(document.changedValues());
+    again.setTime(2);
+    EXPECT_EQ(again.camera().eye, eye);
+}
+
+TEST(Document, DifferencesTakeBackWhatOneInstanceHad) {
+    Document before(tinyScene()), after = before;
+    after.setText("accumulate@b.max-samples", "7");
+    after.apply(Document::difference(after, before));
+    EXPECT_EQ(after.get("accumulate@b.max-samples"), before.get("accumulate@b.max-samples"));
+}
+
+/// A sky of one radiance.
+void writeSky(const std::filesystem::path& path, float radiance) {
+    Image sky({4, 2}, 3);
+    sky.fill(radiance);
+    ExrLayers layers;
+    layers.add("", "RGB", sky);
+    writeExr(path, layers);
+}
+
+TEST(Document, DifferencesTakeBackASkyWithItsSettings) {
+    TemporaryFolder folder;
+    writeSky(folder / "sky.exr", 1);
+    Document before(tinyScene());
+    before.setText("environment.scale", "2");
+    Document after = before;
+    after.setText("environment.file", (folder / "sky.exr").string());
+    Document back = after;
+    back.apply(Document::difference(after, before));
+    EXPECT_EQ(back.scene()->environment.scale, 2);
+    EXPECT_EQ(back.scene()->environment.image, nullptr);
+    back.apply(Document::difference(before, after));
+    EXPECT_EQ(back.scene()->environment.scale, 2);
+    EXPECT_TRUE(Document::difference(back, after).empty()) << Document::difference(back, after).dump();
+}
+
+TEST(Document, ASkyIsFoundBesideTheFileThatNamesIt) {
+    TemporaryFolder folder;
+    writeSky(folder / "sky.exr", 0.25f);
+    Document document(tinyScene());
+    document.apply({{"environment.file", "sky.exr"}}, (folder / "shot.png").string());
+    EXPECT_EQ(document.scene()->environment.image->at(0, 0, 0), 0.25f);
+    EXPECT_EQ(std::get<std::string>(document.get("environment.file")), "sky.exr");
 }
 
 TEST(Document, AppliesWhatIsSelectedBeforeItsEdits) {
