@@ -1,5 +1,7 @@
 #include "session/state_log.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/files.h"
 #include "base/isa.h"
@@ -22,6 +24,14 @@ const json& member(const json& object, const char* key, json::value_t type, cons
     if (found->type() != type && !number)
         throwBadInput({std::string("the embedded state's \"") + key + "\" has the wrong type", where, "", found->dump()});
     return *found;
+}
+
+/// Values as they stand in a state: with the content of a sky's file, where one was read. `whole`: all that differs
+/// from the scene, else what differs from the frame before.
+json stateValues(json values, const Document& document, bool whole) {
+    if ((whole || values.contains("environment.file")) && !document.environmentDigest().empty())
+        values[Document::kEnvironmentDigest] = document.environmentDigest();
+    return values;
 }
 
 std::string embeddedState(const std::filesystem::path& file) {
@@ -77,44 +87,57 @@ Replay readReplay(const std::filesystem::path& file) {
 }
 
 void StateLog::record(const FrameOutput& frame, std::shared_ptr<const Document> document) {
-    const Entry entry{frame.number, std::move(document), frame.changes.cut, frame.historyDropped};
+    const Entry entry{frame.number, std::move(document), frame.changes.cut, frame.historyDropped, nullptr, 0};
     if (!entries_.empty() && entries_.back().frame == frame.number) entries_.back() = entry;
     else entries_.push_back(entry);
+    describeLast();
     forgetOldest();
 }
 
 void StateLog::redescribeLast(std::shared_ptr<const Document> document) {
-    if (!entries_.empty()) entries_.back().document = std::move(document);
+    if (entries_.empty()) return;
+    entries_.back().document = std::move(document);
+    describeLast();
+}
+
+/// Each entry is told once, when it comes: a state of n frames then costs n pieces of text, not n comparisons.
+void StateLog::describeLast() {
+    Entry& last = entries_.back();
+    const uint64_t number = forgotten_ + entries_.size() - 1;
+    last.set = nullptr;
+    last.start = number;
+    if (entries_.size() == 1) return;
+    const Entry& before = entries_[entries_.size() - 2];
+    // Where no module keeps history the frame before is run all the same: motion refers to it.
+    if (!last.cut) last.start = last.historyDropped ? number - 1 : before.start;
+    if (last.document == before.document) return;
+    nlohmann::json set = stateValues(Document::difference(*before.document, *last.document), *last.document, false);
+    if (!set.empty()) last.set = std::make_shared<nlohmann::json>(std::move(set));
 }
 
 size_t StateLog::startOf(size_t index) const {
-    // Where no module keeps history the frame before is run all the same: motion refers to it.
-    for (size_t i = index; i > 0; --i) {
-        if (entries_[i].cut) return i;
-        if (entries_[i].historyDropped) return i - 1;
-    }
-    return 0;
+    return static_cast<size_t>(std::max(entries_[index].start, forgotten_) - forgotten_);
 }
 
 void StateLog::forgetOldest() {
     if (entries_.size() <= kKeptEntries) return;
     const size_t unneeded = std::min(startOf(entries_.size() - 1), entries_.size() - kKeptEntries);
     entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(unneeded));
+    forgotten_ += unneeded;
 }
 
 std::string StateLog::json(const nlohmann::json& output) const {
     const size_t last = entries_.size() - 1, first = startOf(last);
     nlohmann::json frames = nlohmann::json::array();
     for (size_t i = first + 1; i <= last; ++i) {
-        if (entries_[i].document == entries_[i - 1].document) continue;
-        nlohmann::json set = Document::difference(*entries_[i - 1].document, *entries_[i].document);
-        if (!set.empty()) frames.push_back({{"frame", entries_[i].frame}, {"set", std::move(set)}});
+        if (entries_[i].set) frames.push_back({{"frame", entries_[i].frame}, {"set", *entries_[i].set}});
     }
+    const nlohmann::json start = stateValues(entries_[first].document->changedValues(), *entries_[first].document, true);
     const nlohmann::json state = {{"format", kFormat},
                                   {"version", kVersion},
                                   {"scene", {{"name", scene_.name}, {"digest", scene_.digest}}},
                                   {"isa", isaName(activeIsa())},
-                                  {"start", {{"frame", entries_[first].frame}, {"set", entries_[first].document->changedValues()}}},
+                                  {"start", {{"frame", entries_[first].frame}, {"set", start}}},
                                   {"frames", std::move(frames)},
                                   {"frame", entries_[last].frame},
                                   {"output", output}};

@@ -45,6 +45,8 @@ public:
         FrameNumber frame = -1;
         std::shared_ptr<const Document> document;
         bool cut = false, historyDropped = false;
+        std::shared_ptr<const nlohmann::json> set;  ///< what turns the entry before into this one; null: nothing
+        uint64_t start = 0;                         ///< startOf(), counted from the first entry ever
     };
 
     StateLog() = default;
@@ -59,17 +61,21 @@ public:
     const Entry& entry(size_t index) const { return entries_[index]; }
     /// From which entry on frames have to run to draw entry `index` again.
     size_t startOf(size_t index) const;
-    /// Keeps the first `count` entries.
-    void truncate(size_t count) { entries_.resize(count); }
+    /// Keeps the first `count` entries, or all if there are fewer.
+    void truncate(size_t count) {
+        if (count < entries_.size()) entries_.resize(count);
+    }
 
     /// The state of the last entry; `output` says what was written.
     std::string json(const nlohmann::json& output = nlohmann::json::object()) const;
 
 private:
+    void describeLast();
     void forgetOldest();
 
     SceneReference scene_;
     std::deque<Entry> entries_;
+    uint64_t forgotten_ = 0;  ///< entries that were there before the present first
 };
 
 }  // namespace lumi

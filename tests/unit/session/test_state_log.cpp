@@ -1,6 +1,8 @@
 #include "session/state_log.h"
 
 #include "base/files.h"
+#include "base/timer.h"
+#include "image/exr.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 #include "support/tiny_scene.h"
@@ -108,6 +110,54 @@ TEST(StateLog, HoldsWhatAReplayNeeds) {
     EXPECT_EQ(replay.last, 4);
     EXPECT_EQ(replay.start.at("render.seed"), 3);
     EXPECT_EQ(replay.output.at("view"), 0);
+}
+
+TEST(StateLog, TellsWhichSkyItWas) {
+    TemporaryFolder folder;
+    const auto write = [&](float radiance) {
+        Image sky({4, 2}, 3);
+        sky.fill(radiance);
+        ExrLayers layers;
+        layers.add("", "RGB", sky);
+        writeExr(folder / "sky.exr", layers);
+    };
+    write(1);
+    Recorder recorder;
+    Document document(tinyScene());
+    recorder.draw(document, 0);
+    document.setText("environment.file", (folder / "sky.exr").string());
+    const FrameOutput drawn = recorder.draw(document, 1);
+    const std::string state = recorder.states.json();
+    expectSame(replayed(state, document.loadedScene()), drawn);
+    write(2);
+    expectError(ErrorKind::BadInput, [&] { replayed(state, document.loadedScene()); }, {"sky.exr", "changed"});
+}
+
+TEST(StateLog, AStateCostsNoMoreComparisonsTheMoreFramesThereAre) {
+    constexpr int kFrames = 400;
+    StateLog states(SceneReference{"tiny", "0123456789abcdef"});
+    Document document(tinyScene());
+    const Document first = document;
+    FrameOutput frame;
+    for (frame.number = 0; frame.number < kFrames; ++frame.number) {
+        document.set("render.seed", static_cast<int>(frame.number));
+        states.record(frame, std::make_shared<Document>(document));
+    }
+    Timer timer;
+    for (int i = 0; i < 10; ++i) EXPECT_FALSE(Document::difference(first, document).empty());
+    const double comparisonMs = timer.elapsedMs() / 10;
+    timer.restart();
+    const std::string state = states.json();
+    EXPECT_LT(timer.elapsedMs(), comparisonMs * kFrames / 3);
+    EXPECT_EQ(parseReplay(state, "state").sets.size(), size_t(kFrames - 1));
+}
+
+TEST(StateLog, TruncatingNeverGrows) {
+    Recorder recorder;
+    const Document document(tinyScene());
+    recorder.draw(document, 0);
+    recorder.states.truncate(5);
+    EXPECT_EQ(recorder.states.size(), 1u);
 }
 
 TEST(ReadReplay, RefusesWhatIsNoState) {
