@@ -1,5 +1,7 @@
 #include "reconstruct/catalog.h"
 
+#include <vector>
+
 #include "base/error.h"
 #include "reconstruct/accumulate/accumulate.h"
 #include "reconstruct/none/none.h"
@@ -12,19 +14,25 @@ std::unique_ptr<Module> make() {
     return std::make_unique<T>();
 }
 
-const ModuleEntry kCatalog[] = {
-    {"none", "Raw frame", "", make<NoneModule>},
-    {"accumulate", "Progressive mean", "", make<AccumulateModule>},
-};
+std::vector<ModuleEntry>& catalog() {
+    static std::vector<ModuleEntry> entries{
+        {"none", "Raw frame", "", make<NoneModule>},
+        {"accumulate", "Progressive mean", "", make<AccumulateModule>},
+    };
+    return entries;
+}
 
 }  // namespace
 
-std::span<const ModuleEntry> moduleCatalog() { return kCatalog; }
+std::span<const ModuleEntry> moduleCatalog() { return catalog(); }
+
+CatalogAddition::CatalogAddition(const ModuleEntry& entry) { catalog().push_back(entry); }
+CatalogAddition::~CatalogAddition() { catalog().pop_back(); }
 
 const ModuleEntry& findModule(const std::string& instanceName, const std::string& where) {
     const std::string id = instanceName.substr(0, instanceName.find('@'));
     std::vector<std::string> ids;
-    for (const ModuleEntry& entry : kCatalog) {
+    for (const ModuleEntry& entry : moduleCatalog()) {
         if (id == entry.id) return entry;
         ids.push_back(entry.id);
     }

@@ -17,6 +17,16 @@ struct ModuleEntry {
 
 std::span<const ModuleEntry> moduleCatalog();
 
+/// Adds a method to the catalogue while it lives: how tests try the frame loop on methods that block, stop or fail.
+/// Made and destroyed while no other thread looks into the catalogue.
+class CatalogAddition {
+public:
+    explicit CatalogAddition(const ModuleEntry& entry);
+    ~CatalogAddition();
+    CatalogAddition(const CatalogAddition&) = delete;
+    CatalogAddition& operator=(const CatalogAddition&) = delete;
+};
+
 /// The entry of an instance name: `svgf` and `svgf@b` are both svgf. Throws Error(Usage) naming the nearest id.
 const ModuleEntry& findModule(const std::string& instanceName, const std::string& where = "");
 

@@ -1,6 +1,7 @@
 #include "session/frame_engine.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 
 #include "base/error.h"
@@ -156,14 +157,24 @@ FrameSampling FrameEngine::sampling(const FrameRequest& request, const Completed
 }
 
 std::shared_ptr<Signals> FrameEngine::freeSignals() {
-    for (const std::shared_ptr<Signals>& signals : pool_)
-        if (signals.use_count() == 1) return signals;
+    for (const std::shared_ptr<Signals>& signals : pool_) {
+        if (signals.use_count() != 1) continue;
+        // Another thread let go of them: what it read comes before what is written now.
+        std::atomic_thread_fence(std::memory_order_acquire);
+        return signals;
+    }
     pool_.push_back(std::make_shared<Signals>());
     return pool_.back();
 }
 
 bool FrameEngine::traceSignals(const FrameRequest& request, const CameraPose& previousCamera, bool replaces,
                                Completed& next, StageTimer& timer, std::stop_token stop) {
+    if (bound_ != next.scene) {
+        const auto measured = timer.measure("build");
+        bound_ = nullptr;  // if building fails, the next frame builds again
+        tracer_.bind(next.scene);
+        bound_ = next.scene;
+    }
     const FrameSampling asked = sampling(request, next, previousCamera);
     if (replaces && current_->scene == next.scene && current_->camera == next.camera &&
         current_->signals->available().contains(asked.wanted)) {
@@ -172,12 +183,6 @@ bool FrameEngine::traceSignals(const FrameRequest& request, const CameraPose& pr
             next.rays = current_->rays;
             return true;
         }
-    }
-    if (bound_ != next.scene) {
-        const auto measured = timer.measure("build");
-        bound_ = nullptr;  // if building fails, the next frame builds again
-        tracer_.bind(next.scene);
-        bound_ = next.scene;
     }
     const auto measured = timer.measure("trace");
     const std::shared_ptr<Signals> signals = freeSignals();
@@ -235,6 +240,13 @@ bool FrameEngine::runModule(const std::string& name, const FrameContext& context
     }
     out = context.signals[Signal::Noisy];
     return true;
+}
+
+bool FrameEngine::canRepeat(FrameNumber frame) const {
+    return current_ && current_->frame == frame &&
+           std::none_of(instances_.begin(), instances_.end(), [&](const auto& entry) {
+               return entry.second.lastFrame > frame && isActive(entry.first, current_->document);
+           });
 }
 
 size_t FrameEngine::byteCount() const {

@@ -51,9 +51,13 @@ public:
     explicit FrameEngine(MessageLog& log, OnModuleError onError = OnModuleError::Throw);
     ~FrameEngine();
 
-    /// Draws a frame, or returns nothing if it was stopped; then nothing has changed. A frame with the number of the
+    /// Draws a frame, or returns nothing if it was stopped; then the same number asked for again is as if it had not been. A frame with the number of the
     /// last completed one replaces it, seen from the same frame before; any other number but the next is a cut.
     std::optional<FrameOutput> advance(const FrameRequest& request, std::stop_token stop = {});
+
+    /// Can frame `frame`, the last completed one, be replaced? Not after a frame was stopped when one module had already
+    /// run it, nor before the first frame after a cut that was asked for.
+    bool canRepeat(FrameNumber frame) const;
 
     /// Rays of the frame being traced, for a progress bar; from any thread.
     TraceCounts tracedSoFar() const { return tracer_.counts(); }

@@ -1,6 +1,7 @@
 #include "session/frame_engine.h"
 
 #include "support/expect_error.h"
+#include "support/probe_module.h"
 #include "support/tiny_scene.h"
 
 namespace lumi::test {
@@ -92,6 +93,49 @@ TEST(FrameEngine, AStoppedFrameChangesNothing) {
     stop.request_stop();
     EXPECT_FALSE(stopped.engine.advance({other, 1, false, {}, {}}, stop.get_token()).has_value());
     EXPECT_EQ(*stopped.draw(document, 1).results.at("accumulate"), *straight.draw(document, 1).results.at("accumulate"));
+}
+
+/// Two views: the mean, then a module that can be told to stop.
+Document meanAndProbe() {
+    Document document(tinyScene());
+    document.setText("view.layout", "wipe");
+    document.setText("view.1.module", "probe");
+    return document;
+}
+
+TEST(FrameEngine, AFrameThatTheSecondModuleStopsCanBeDrawnAgain) {
+    Engine stopped, straight;
+    const Document document = meanAndProbe();
+    Document other = document;
+    other.setText("camera.eye", "0,2,5.1");
+    for (FrameNumber frame = 0; frame < 3; ++frame) stopped.draw(document, frame), straight.draw(document, frame);
+    EXPECT_TRUE(stopped.engine.canRepeat(2));
+    ProbeModule::stops = true;
+    EXPECT_FALSE(stopped.engine.advance({other, 3, false, {}, {}}).has_value());
+    ProbeModule::stops = false;
+    EXPECT_FALSE(stopped.engine.canRepeat(2)) << "the mean has gone on";
+    EXPECT_TRUE(straight.engine.canRepeat(2));
+    for (FrameNumber frame = 3; frame < 5; ++frame) {
+        const FrameOutput a = stopped.draw(document, frame), b = straight.draw(document, frame);
+        EXPECT_EQ(*a.results.at("accumulate"), *b.results.at("accumulate")) << frame;
+        EXPECT_EQ(a.convergence.at("accumulate").samples, static_cast<uint64_t>(frame) + 1);
+    }
+    EXPECT_TRUE(stopped.engine.canRepeat(4));
+}
+
+TEST(FrameEngine, ModulesAlwaysTraceTheirFramesScene) {
+    Engine e;
+    Document document = meanAndProbe(), other = document;
+    other.setText("material.floor-paint.roughness", "0.1");
+    e.draw(document, 0);
+    e.draw(document, 1);
+    std::stop_source stop;
+    stop.request_stop();
+    EXPECT_FALSE(e.engine.advance({other, 2, false, {}, {}}, stop.get_token()).has_value());
+    ProbeModule::wrongScenes = 0;
+    document.setText("probe.again", "true");
+    e.draw(document, 1);
+    EXPECT_EQ(ProbeModule::wrongScenes, 0);
 }
 
 TEST(FrameEngine, WhatIsAskedForDoesNotChangeTheImage) {
