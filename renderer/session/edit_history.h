@@ -15,30 +15,41 @@ public:
         redo_.clear();
         if (open_ && ids == ids_) return;
         if (undo_.size() >= kSteps) undo_.erase(undo_.begin());
-        undo_.push_back(before);
+        undo_.push_back({before, ids});
         ids_ = ids;
         open_ = true;
     }
     void end() { open_ = false; }
     void clear() { *this = {}; }
 
-    /// The document before the last step, or nothing; `present` is what redo() gives back.
-    std::optional<Document> undo(const Document& present) { return move(undo_, redo_, present); }
-    std::optional<Document> redo(const Document& present) { return move(redo_, undo_, present); }
+    /// The document before the last step, or nothing; `present` is what redo() gives back. Time stays, unless the step
+    /// was an edit of it: an animation that plays goes on.
+    std::optional<Document> undo(const Document& present) {
+        open_ = false;
+        return move(undo_, redo_, present);
+    }
+    std::optional<Document> redo(const Document& present) {
+        open_ = false;
+        return move(redo_, undo_, present);
+    }
 
 private:
     static constexpr size_t kSteps = 200;
 
-    std::optional<Document> move(std::vector<Document>& from, std::vector<Document>& to, const Document& present) {
-        open_ = false;
+    struct Step {
+        Document document;
+        std::string ids;  ///< separated by spaces
+    };
+    static std::optional<Document> move(std::vector<Step>& from, std::vector<Step>& to, const Document& present) {
         if (from.empty()) return std::nullopt;
-        to.push_back(present);
-        std::optional<Document> document = std::move(from.back());
+        Step step = std::move(from.back());
         from.pop_back();
-        return document;
+        to.push_back({present, step.ids});
+        if ((' ' + step.ids + ' ').find(" time ") == std::string::npos) step.document.setTime(present.time());
+        return std::move(step.document);
     }
 
-    std::vector<Document> undo_, redo_;
+    std::vector<Step> undo_, redo_;
     std::string ids_;
     bool open_ = false;
 };
