@@ -1,5 +1,6 @@
 #include "session/changes.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace lumi {
@@ -49,6 +50,14 @@ void addEdits(const Document& before, const Document& now, Changes& changes) {
 bool isCut(const FrameState& before, const FrameState& now) {
     return before.document.loadedScene() != now.document.loadedScene() || before.camera.extent != now.camera.extent ||
            timeJumps(before.document, now.document) || cameraJumps(before, now);
+}
+
+Redo worstDifference(const Document& before, const Document& now) {
+    const nlohmann::json changes = Document::difference(before, now);
+    Redo worst = Redo::Display;
+    for (const ParameterInfo& info : now.list())
+        if (changes.contains(info.id)) worst = std::max(worst, info.redo);
+    return worst;
 }
 
 Changes differences(const FrameState& before, const FrameState& now, const PosedScene& posed) {

@@ -18,6 +18,9 @@ struct FrameState {
 /// more than a right angle)?
 bool isCut(const FrameState& before, const FrameState& now);
 
+/// The worst that the differences between two documents of one scene invalidate.
+Redo worstDifference(const Document& before, const Document& now);
+
 /// What differs, a cut excluded. `posed` is the scene of `now`, whose previous moment is that of `before`.
 Changes differences(const FrameState& before, const FrameState& now, const PosedScene& posed);
 

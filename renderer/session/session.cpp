@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "reconstruct/catalog.h"
+#include "session/changes.h"
 #include "session/session_impl.h"
 #include "session/view_buffers.h"
 
@@ -25,6 +26,7 @@ Session::Impl::~Impl() {
         loadStop.request_stop();
     }
     wake.notify_all();
+    thread.join();  // it may yet write what was to be saved
     reapThreads(true);
 }
 
@@ -67,11 +69,10 @@ void Session::Impl::watch(std::stop_token quit) {
 
 /// Puts a whole document in the present one's place; what that invalidates follows from what differs.
 void Session::Impl::replaceDocument(const Document& next) {
-    const nlohmann::json changes = Document::difference(*document, next);
-    Redo worst = Redo::Display;
-    for (const ParameterInfo& info : next.list())
-        if (changes.contains(info.id)) worst = std::max(worst, info.redo);
+    const Redo worst = worstDifference(*document, next);
+    timeEdited = timeEdited || document->time() != next.time();
     document = next;
+    ++environmentGeneration;  // a sky on its way would undo what was just put back
     noteChange(worst);
 }
 
@@ -136,6 +137,7 @@ void Session::setAll(const std::vector<std::pair<std::string, ParameterValue>>& 
     std::unique_lock lock(impl_->mutex);
     Document next = impl_->requireDocument();
     Redo worst = Redo::Display;
+    bool timeEdited = false, skyEdited = false;
     std::string ids;
     std::optional<std::string> environmentFile;
     for (const auto& [id, value] : values) {
@@ -143,8 +145,11 @@ void Session::setAll(const std::vector<std::pair<std::string, ParameterValue>>& 
         const std::string* file = std::get_if<std::string>(&value);
         if (id == "environment.file" && file && !file->empty()) environmentFile = *file;
         else worst = std::max(worst, next.set(id, value));
-        impl_->timeEdited |= id == "time";
+        timeEdited = timeEdited || id == "time";
+        skyEdited = skyEdited || id == "environment.file";
     }
+    impl_->timeEdited = impl_->timeEdited || timeEdited;
+    const uint64_t environment = skyEdited ? ++impl_->environmentGeneration : 0;
     const bool reload = next.sceneIndex() != impl_->document->sceneIndex() ||
                         next.sceneVariant() != impl_->document->sceneVariant();
     Impl::Origin origin = impl_->origin;
@@ -158,7 +163,7 @@ void Session::setAll(const std::vector<std::pair<std::string, ParameterValue>>& 
     }
     lock.unlock();
     if (reload) impl_->startLoading(origin);
-    if (environmentFile) impl_->loadEnvironment(*environmentFile);
+    if (environmentFile) impl_->loadEnvironment(*environmentFile, environment);
 }
 
 void Session::endEdit() {
@@ -225,7 +230,8 @@ void Session::stepBack() {
     std::lock_guard lock(impl_->mutex);
     impl_->rendering = false;
     ++impl_->stepsBack;
-    if (impl_->drawing) impl_->frameStop.request_stop();
+    // Steps back that are under way are let finish: this one goes on from there.
+    if (impl_->drawing && !impl_->steppingBack) impl_->frameStop.request_stop();
     impl_->wake.notify_all();
 }
 

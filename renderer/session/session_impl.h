@@ -36,6 +36,8 @@ struct Session::Impl {
         int stepsBack = 0;
         bool inspecting = false;  ///< every buffer is wanted
         uint64_t revision = 0;    ///< of the document
+        uint64_t sceneNumber = 0; ///< of the scene that this work is about
+        StateLog states;          ///< as it was then, for StepBack and SaveView
         Save save;
         std::stop_token stop;
     };
@@ -57,7 +59,7 @@ struct Session::Impl {
     // session_load.cpp
     void startLoading(const Origin& origin);
     void load(const Origin& origin, uint64_t generation, std::stop_token stop);
-    void loadEnvironment(const std::string& file);
+    void loadEnvironment(const std::string& file, uint64_t generation);
     void reapThreads(bool all);
     void runAside(std::function<void(std::stop_token)> body);
 
@@ -68,7 +70,9 @@ struct Session::Impl {
     void perform(const Work& work);
     void drawFrame(const Work& work);
     void stepBack(const Work& work);
+    void giveUp(const Work& work);
     void saveView(const Work& work);
+    void finishSaves();
     void complete(FrameOutput frame, const Work& work);
     void publish();
 
@@ -90,6 +94,7 @@ struct Session::Impl {
     bool frameFailed = false;  ///< drawing failed: wait for a change
     std::stop_source frameStop;
     bool drawing = false;  ///< a frame that changes may abandon
+    bool steppingBack = false;  ///< it is one of those that a step back runs
     bool heldBack = false;  ///< a change came in a stream of changes: see kStreamMs
     bool guarded = false;  ///< the frame before was abandoned
     Timer sinceFrameBegan, sinceChange;
@@ -97,6 +102,8 @@ struct Session::Impl {
     std::shared_ptr<const Snapshot> snapshot;
     LoadStatus loading;
     uint64_t loadGeneration = 0;
+    uint64_t environmentGeneration = 0;  ///< of the sky asked for last
+    uint64_t sceneNumber = 0;            ///< grows when a loaded scene takes the present one's place
     std::stop_source loadStop;
     Origin origin;
     StateLog states;

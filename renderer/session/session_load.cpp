@@ -107,6 +107,10 @@ void Session::Impl::load(const Origin& wanted, uint64_t generation, std::stop_to
         loaded.emplace(scene);
         loaded->set("scene.index", wanted.index);
         loaded->set("scene.variant", wanted.variant);
+        std::unique_lock lock(mutex);
+        const std::optional<Document> before = document;
+        lock.unlock();
+        prepare(*loaded, before, wanted.set, log);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::Interrupted) failure = error.what();
     } catch (const std::exception& error) {
@@ -114,16 +118,13 @@ void Session::Impl::load(const Origin& wanted, uint64_t generation, std::stop_to
     }
     if (!failure.empty() && !stop.stop_requested()) log.error(failure);
 
-    std::unique_lock lock(mutex);
-    const std::optional<Document> before = document;
-    lock.unlock();
-    if (loaded) prepare(*loaded, before, wanted.set, log);
-
-    lock.lock();
+    std::lock_guard lock(mutex);
     if (generation != loadGeneration) return;
     loading = {};
-    if (!loaded) return;
+    if (!loaded || !failure.empty()) return;
     document = std::move(loaded);
+    ++sceneNumber;
+    ++environmentGeneration;
     origin = wanted;
     history.clear();
     states = StateLog({referenceName(wanted.path), document->loadedScene()->contentDigest});
@@ -132,15 +133,15 @@ void Session::Impl::load(const Origin& wanted, uint64_t generation, std::stop_to
     noteChange(Redo::Build);
 }
 
-void Session::Impl::loadEnvironment(const std::string& file) {
-    runAside([this, file](std::stop_token) {
+void Session::Impl::loadEnvironment(const std::string& file, uint64_t generation) {
+    runAside([this, file, generation](std::stop_token) {
         try {
             std::unique_lock lock(mutex);
             Document copy = requireDocument();
             lock.unlock();
             copy.set("environment.file", file);
             lock.lock();
-            if (document->loadedScene() != copy.loadedScene()) return;
+            if (generation != environmentGeneration) return;  // another was asked for since
             history.begin(*document, "environment.file ");
             document->adoptEnvironment(copy);
             noteChange(Redo::Samples);

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/parallel.h"
+#include "session/changes.h"
 #include "session/session_impl.h"
 #include "session/view_buffers.h"
 
@@ -33,7 +34,7 @@ void Session::Impl::loop(std::stop_token quit) {
         {
             std::unique_lock lock(mutex);
             wake.wait(lock, quit, [this] { return hasWork(); });
-            if (quit.stop_requested()) return;
+            if (quit.stop_requested()) break;
             work = takeWork();
         }
         try {
@@ -44,8 +45,9 @@ void Session::Impl::loop(std::stop_token quit) {
             frameFailed = true;
         }
         std::lock_guard lock(mutex);
-        drawing = false;
+        drawing = steppingBack = false;
     }
+    finishSaves();
 }
 
 bool Session::Impl::hasWork() const {
@@ -59,6 +61,7 @@ Session::Impl::Work Session::Impl::takeWork() {
     Work work;
     work.stop = frameStop.get_token();
     work.inspecting = inspecting;
+    work.sceneNumber = sceneNumber;
     const bool idle = (!rendering || resting) && !stepWanted;
     const Redo redo = pending.value_or(Redo::Display);
     if (restartWanted) {
@@ -66,6 +69,10 @@ Session::Impl::Work Session::Impl::takeWork() {
     } else if (stepsBack > 0) {
         work.kind = Work::StepBack;
         work.stepsBack = std::exchange(stepsBack, 0);
+        work.revision = revision;
+        work.states = states;
+        drawing = steppingBack = true;
+        heldBack = guarded = false;
         return work;
     } else if (shownDocument && pending && redo == Redo::Display) {
         work.kind = Work::Display;
@@ -74,6 +81,7 @@ Session::Impl::Work Session::Impl::takeWork() {
     } else if (!pending && !saves.empty() && shownDocument) {
         work.kind = Work::SaveView;
         work.save = saves.front();
+        work.states = states;
         saves.pop_front();
         return work;
     }
@@ -109,6 +117,7 @@ void Session::Impl::perform(const Work& work) {
             shownRevision = work.revision;
             {
                 std::lock_guard lock(mutex);
+                if (work.sceneNumber != sceneNumber) return;
                 states.redescribeLast(work.document);
             }
             publish();
@@ -129,19 +138,27 @@ void Session::Impl::drawFrame(const Work& work) {
     std::optional<FrameOutput> frame = engine.advance(request, work.stop);
     if (frame) return complete(std::move(*frame), work);
     std::lock_guard lock(mutex);
-    ++abandoned;
     guarded = true;
     // What this frame was to show has not been seen; the next takes it up.
     restartWanted = restartWanted || work.cut;
+    giveUp(work);
+}
+
+/// A frame of `work` was stopped; the caller holds the lock.
+void Session::Impl::giveUp(const Work& work) {
+    ++abandoned;
     pending = std::max(pending, work.redo);
+    // Where a module is ahead of the frame shown, that frame cannot be drawn again: go on to the next.
+    if (shown.number >= 0 && !engine.canRepeat(shown.number)) pending = std::max(pending, std::optional(Redo::Samples));
 }
 
 void Session::Impl::complete(FrameOutput frame, const Work& work) {
-    shown = std::move(frame);
-    shownDocument = work.document;
-    shownRevision = work.revision;
     {
         std::lock_guard lock(mutex);
+        if (work.sceneNumber != sceneNumber) return;  // of a scene that is gone
+        shown = std::move(frame);
+        shownDocument = work.document;
+        shownRevision = work.revision;
         states.record(shown, shownDocument);
         resting = shown.rests();
         guarded = false;
@@ -150,11 +167,7 @@ void Session::Impl::complete(FrameOutput frame, const Work& work) {
 }
 
 void Session::Impl::stepBack(const Work& work) {
-    StateLog replayed;
-    {
-        std::lock_guard lock(mutex);
-        replayed = states;
-    }
+    const StateLog& replayed = work.states;
     if (replayed.size() < 2) return log.info("There is no earlier frame.");
     const size_t target = replayed.size() - 1 - std::min<size_t>(replayed.size() - 1, static_cast<size_t>(work.stepsBack));
     const size_t start = replayed.startOf(target);
@@ -170,21 +183,27 @@ void Session::Impl::stepBack(const Work& work) {
         reached = i;
     }
     std::lock_guard lock(mutex);
-    if (!frame) {
-        restartWanted = true;
-        return;
+    if (work.sceneNumber != sceneNumber) return;
+    if (frame) {
+        states.truncate(reached + 1);
+        shown = std::move(*frame);
+        shownDocument = replayed.entry(reached).document;
+        resting = shown.rests();
     }
-    states.truncate(reached + 1);
-    shown = std::move(*frame);
-    shownDocument = states.entry(reached).document;
-    document = *shownDocument;
-    ++revision;
-    pending = Redo::Display;
-    resting = shown.rests();
+    if (!frame || reached < target) giveUp(work);
+    if (revision == work.revision) {
+        if (frame) document = *shownDocument;
+        ++revision;
+        pending = std::max(pending, std::optional(Redo::Display));
+    } else if (frame) {
+        // Edits that came meanwhile stay; the frame takes them up.
+        pending = std::max(pending, std::optional(worstDifference(*shownDocument, *document)));
+    }
 }
 
 void Session::Impl::saveView(const Work& work) {
     const Save& save = work.save;
+    if (work.states.empty()) return log.error(save.path.string() + ": the scene that it was to show is gone");
     if (!shown.results.count(shownDocument->view(save.view).module))
         return log.error(save.path.string() + ": this view is not drawn at present");
     const OutputChoice choice{save.view, "all", false};
@@ -193,6 +212,7 @@ void Session::Impl::saveView(const Work& work) {
     std::shared_ptr<const FrameOutput> frame;
     if (lowerExtension(save.path) == ".exr") {
         // The same frame once more, with every buffer.
+        if (!engine.canRepeat(shown.number)) return log.error(save.path.string() + ": not saved, its frame was given up");
         const BufferSelection all = BufferSelection::all(instance);
         request.signals = all.signals;
         request.taps[instance] = all.taps;
@@ -201,19 +221,31 @@ void Session::Impl::saveView(const Work& work) {
     } else {
         frame = std::make_shared<FrameOutput>(shown);
     }
-    StateLog recorded;
-    {
-        std::lock_guard lock(mutex);
-        recorded = states;
-    }
-    runAside([this, save, choice, frame, recorded, from = shownDocument](std::stop_token) {
+    runAside([this, save, choice, frame, states = work.states, from = shownDocument](std::stop_token) {
         try {
-            exportView(save.path, *frame, *from, choice, recorded.json(choice.json()));
+            exportView(save.path, *frame, *from, choice, states.json(choice.json()));
             log.info("Saved " + save.path.string());
         } catch (const std::exception& error) {
             log.error(error.what());
         }
     });
+}
+
+/// What was asked to be saved before the end.
+void Session::Impl::finishSaves() {
+    Work work;
+    {
+        std::lock_guard lock(mutex);
+        if (shownDocument) work.states = states;
+    }
+    for (const Save& save : saves) {
+        work.save = save;
+        try {
+            saveView(work);
+        } catch (const std::exception& error) {
+            log.error(error.what());
+        }
+    }
 }
 
 void Session::Impl::publish() {

@@ -13,48 +13,11 @@
 #include "session/export.h"
 #include "session/state_log.h"
 #include "support/expect_error.h"
+#include "support/session_test.h"
 #include "support/temporary_folder.h"
 
 namespace lumi::test {
 namespace {
-
-const std::filesystem::path kCornell = LUMISCOPE_SOURCE_DIR "/scenes/cornell.json";
-
-class SessionTest : public testing::Test {
-protected:
-    /// Waits until `condition` holds; fails after a minute, which only a deadlock takes.
-    void waitFor(const char* what, const std::function<bool()>& condition) {
-        Timer timer;
-        while (!condition()) {
-            ASSERT_LT(timer.elapsedMs(), 60'000) << "waited in vain: " << what;
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-    }
-    void open(std::vector<std::pair<std::string, std::string>> set = {}) {
-        set.insert(set.begin(), {{"render.width", "32"}, {"render.height", "24"}});
-        session.open(kCornell, -1, "", set);
-        waitFor("the scene and its first picture", [&] { return session.snapshot() != nullptr; });
-    }
-    FrameNumber shownFrame() { return session.snapshot()->frame; }
-    /// Pauses, and waits until nothing is drawn any more.
-    void pause() {
-        session.setRendering(false);
-        uint64_t serial = 0;
-        do {
-            serial = session.snapshot()->serial;
-            std::this_thread::sleep_for(std::chrono::milliseconds(150));
-        } while (session.snapshot()->serial != serial);
-    }
-    Image result() { return *session.snapshot()->results.at("accumulate"); }
-    bool logged(const std::string& part) {
-        for (const Message& message : log.messages())
-            if (message.text.find(part) != std::string::npos) return true;
-        return false;
-    }
-
-    MessageLog log;
-    Session session{log};
-};
 
 TEST_F(SessionTest, StartsEmptyAndRefusesChanges) {
     EXPECT_FALSE(session.hasScene());

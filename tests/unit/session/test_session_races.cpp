@@ -1,0 +1,163 @@
+// What happens when two things that a user asks for meet in the middle of a frame.
+#include <nlohmann/json.hpp>
+
+#include "image/exr.h"
+#include "session/state_log.h"
+#include "support/probe_module.h"
+#include "support/session_test.h"
+#include "support/temporary_folder.h"
+
+namespace lumi::test {
+namespace {
+
+class SessionRaces : public SessionTest {
+protected:
+    ~SessionRaces() override { ProbeModule::holds = false; }
+
+    void openWithProbe() {
+        open({{"view.0.module", "probe"}});
+        waitFor("some frames", [&] { return shownFrame() >= 4; });
+    }
+    /// The frame that is drawn next stays in its module until release().
+    void hold() {
+        ProbeModule::holds = true;
+        waitFor("the frame to be held", [] { return ProbeModule::isHeld.load(); });
+    }
+    void release() { ProbeModule::holds = false; }
+    void loadMeanwhile(const std::string& width) {
+        session.open(kCornell, -1, "", {{"render.width", width}, {"render.height", "8"}, {"view.0.module", "probe"}});
+        waitFor("the scene", [&] { return !session.loadStatus().loading; });
+    }
+    Replay state() { return parseReplay(session.stateJson(), "state"); }
+};
+
+TEST_F(SessionRaces, AFrameOfASceneThatIsGoneIsDropped) {
+    openWithProbe();
+    hold();
+    session.setRendering(false);
+    loadMeanwhile("20");
+    release();
+    waitFor("the new scene", [&] { return session.snapshot()->extent.width == 20; });
+    EXPECT_EQ(shownFrame(), 0);
+    session.stepBack();
+    waitFor("the message", [&] { return logged("no earlier frame"); });
+    EXPECT_EQ(state().start.at("render.width"), 20);
+}
+
+TEST_F(SessionRaces, ASceneThatArrivesDuringAStepBackStays) {
+    openWithProbe();
+    pause();
+    ProbeModule::holds = true;
+    session.stepBack();
+    waitFor("the replay", [] { return ProbeModule::isHeld.load(); });
+    loadMeanwhile("20");
+    release();
+    waitFor("the new scene", [&] { return session.snapshot()->extent.width == 20; });
+    EXPECT_EQ(session.document().render().width, 20);
+    EXPECT_EQ(state().start.at("render.width"), 20);
+    EXPECT_EQ(state().last, 0);
+}
+
+TEST_F(SessionRaces, ASceneThatArrivesDuringASaveLeavesTheFileWhole) {
+    TemporaryFolder folder;
+    openWithProbe();
+    pause();
+    const FrameNumber saved = shownFrame();
+    ProbeModule::holds = true;
+    session.saveView(0, folder / "shot.exr");
+    waitFor("the save", [] { return ProbeModule::isHeld.load(); });
+    loadMeanwhile("20");
+    release();
+    waitFor("the file", [&] { return logged("Saved "); });
+    EXPECT_EQ(readReplay(folder / "shot.exr").last, saved);
+}
+
+TEST_F(SessionRaces, AnEditDuringAStepBackIsKept) {
+    openWithProbe();
+    pause();
+    const uint64_t abandoned = session.abandonedFrames();
+    ProbeModule::holds = true;
+    session.stepBack();
+    waitFor("the replay", [] { return ProbeModule::isHeld.load(); });
+    session.setText("path.max-depth", "2");
+    release();
+    waitFor("a frame with it", [&] { return session.snapshot()->revision == session.revision(); });
+    EXPECT_EQ(session.document().path().maxDepth, 2);
+    EXPECT_GT(session.abandonedFrames(), abandoned);
+}
+
+TEST_F(SessionRaces, WhatIsBeingSavedAtTheEndIsWritten) {
+    TemporaryFolder folder;
+    MessageLog messages;
+    {
+        std::jthread later;
+        Session ending(messages);
+        ending.open(kCornell, -1, "", {{"render.width", "32"}, {"render.height", "24"}, {"view.0.module", "probe"}});
+        waitFor("a picture", [&] { return ending.snapshot() != nullptr; });
+        ending.setRendering(false);
+        ProbeModule::holds = true;
+        ending.step();
+        waitFor("the frame to be held", [] { return ProbeModule::isHeld.load(); });
+        ending.saveView(0, folder / "last.png");
+        later = std::jthread([this] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+            release();
+        });
+        // The session ends here, while the frame is held.
+    }
+    EXPECT_TRUE(std::filesystem::exists(folder / "last.png"));
+}
+
+TEST_F(SessionRaces, TheSkyAskedForLastWins) {
+    TemporaryFolder folder;
+    const auto write = [&](const char* name, Extent2 extent) {
+        Image sky(extent, 3);
+        sky.fill(0.5f);
+        ExrLayers layers;
+        layers.add("", "RGB", sky);
+        writeExr(folder / name, layers);
+        return (folder / name).string();
+    };
+    const std::string slow = write("slow.exr", {2048, 1024}), quick = write("quick.exr", {4, 2});
+    open();
+    session.setText("environment.file", slow);
+    session.setText("environment.file", quick);
+    const auto present = [&] { return std::get<std::string>(session.document().get("environment.file")); };
+    waitFor("the sky", [&] { return present() == quick; });
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    EXPECT_EQ(present(), quick);
+    EXPECT_TRUE(session.undo());
+    EXPECT_EQ(present(), "");
+}
+
+TEST_F(SessionRaces, UndoWhilePlayingLeavesTimeAlone) {
+    open();
+    session.setPlaying(true);
+    session.setText("view.0.exposure", "1");
+    session.endEdit();
+    waitFor("time", [&] { return session.document().time() > 0.2f; });
+    pause();
+    const float time = session.document().time();
+    EXPECT_TRUE(session.undo());
+    EXPECT_EQ(session.document().view(0).display.exposureEv, session.document().view(1).display.exposureEv);
+    EXPECT_EQ(session.document().time(), time);
+    session.setText("time", "3");
+    session.endEdit();
+    EXPECT_TRUE(session.undo());
+    EXPECT_EQ(session.document().time(), time) << "an edit of time itself is undone";
+}
+
+TEST_F(SessionRaces, ARefusedChangeLeavesTimeToGoOn) {
+    open({{"render.fps", "50"}});
+    pause();
+    session.setPlaying(true);
+    const float before = session.snapshot()->time;
+    EXPECT_ANY_THROW(session.setAll({{"time", 9.0f}, {"no.such-id", 1}}));
+    const FrameNumber frame = shownFrame();
+    session.step();
+    waitFor("a frame", [&] { return shownFrame() == frame + 1; });
+    EXPECT_NEAR(session.snapshot()->time - before, 0.02f, 1e-4f);
+}
+
+}  // namespace
+}  // namespace lumi::test
