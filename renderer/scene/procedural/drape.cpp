@@ -92,18 +92,18 @@ private:
                                             {r * 2.1f, 0.035f},
                                             {r * 1.7f, 0.055f},
                                             {0, 0.066f}},
-                                           4);
-        append(mesh, lathe(knob, 24), 1, placed({reach, y, 0}, {0, 0, -90}));
-        append(mesh, lathe(knob, 24), 1, placed({-reach, y, 0}, {0, 0, 90}));
+                                           2);
+        append(mesh, lathe(knob, 14), 1, placed({reach, y, 0}, {0, 0, -90}));
+        append(mesh, lathe(knob, 14), 1, placed({-reach, y, 0}, {0, 0, 90}));
         const int rings = static_cast<int>(folds_);
         for (int i = 0; i < rings; ++i) {
             std::vector<Vec3> circle;
             const float x = width_ * ((static_cast<float>(i) + 0.5f) / static_cast<float>(rings) - 0.5f);
-            for (int k = 0; k <= 16; ++k) {
-                const float a = 2 * kPi * static_cast<float>(k) / 16;
+            for (int k = 0; k <= 10; ++k) {
+                const float a = 2 * kPi * static_cast<float>(k) / 10;
                 circle.push_back({x, y - 0.006f + 0.024f * std::sin(a), 0.024f * std::cos(a)});
             }
-            append(mesh, tube(circle, std::vector<float>(circle.size(), 0.003f), 6, false), 1);
+            append(mesh, tube(circle, std::vector<float>(circle.size(), 0.003f), 4, false), 1);
         }
     }
 

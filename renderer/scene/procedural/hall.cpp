@@ -120,7 +120,7 @@ private:
         const auto column = Placer::share(hall::column(tall, columnRadius_ * (floor == 0 ? 1 : 0.88f), flutes_));
         const auto pier = Placer::share(hall::pier(tall, columnRadius_ * 2.9f));
         const auto arch = Placer::share(archPanel(bay_, r + kOverArch, kThickness, 0.02f, r, true));
-        const auto rail = floor > 0 ? Placer::share(balustrade(bay_ - columnRadius_ * 2.4f, 0.95f, 0.46f)) : nullptr;
+        const auto rail = floor > 0 ? Placer::share(balustrade(bay_ - columnRadius_ * 2.4f, 0.95f, 0.52f)) : nullptr;
         forCourtEdge(
             [&](const Vec3& at, float yaw, bool corner) {
                 placer.put(corner ? "pier" : "column", corner ? pier : column, at + Vec3(0, y, 0), yaw);
@@ -275,7 +275,7 @@ private:
 
     int baysX_ = 5, baysZ_ = 2, floors_ = 2, flutes_ = 0;
     float bay_ = 3.6f, columnHeight_ = 3.1f, columnRadius_ = 0.235f;
-    bool lanterns_ = true;
+    bool lanterns_ = false;
 };
 
 }  // namespace

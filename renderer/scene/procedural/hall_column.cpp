@@ -5,7 +5,7 @@ namespace {
 
 /// A leaf of the capital: rises along the bell and curls outwards at its tip.
 Mesh acanthus(float height, float width, float radius, float flare) {
-    return gridSurface(4, 6, [&](float u, float v) {
+    return gridSurface(3, 5, [&](float u, float v) {
         const float across = 2 * u - 1;
         const float half =
             0.5f * width * std::sqrt(std::max(0.0f, 1 - std::pow(v, 3.0f) * 0.9f)) * (1 + 0.10f * std::cos(v * 19));
@@ -84,10 +84,10 @@ Mesh column(float height, float radius, int flutes) {
                  20),
            kTrim);
     const float y0 = plinth + base, y1 = height - cap;
-    const int around = flutes > 0 ? flutes * 4 : 28;
+    const int around = flutes > 0 ? flutes * 4 : 24;
     append(mesh,
            gridSurface(
-               around, 10,
+               around, 7,
                [&](float u, float v) {
                    const float swell = 1 - 0.16f * v * v + 0.012f * std::sin(kPi * v);
                    const float ends = glm::smoothstep(0.0f, 0.035f, v) * (1 - glm::smoothstep(0.965f, 1.0f, v));

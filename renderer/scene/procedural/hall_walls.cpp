@@ -5,7 +5,7 @@
 namespace lumi::hall {
 namespace {
 
-constexpr int kArchSteps = 18;
+constexpr int kArchSteps = 16;
 
 /// Where the ray from the arch's centre at `angle` leaves the panel above the springing line.
 Vec2 panelBorder(float angle, float halfWidth, float above) {
@@ -151,7 +151,7 @@ Mesh balustrade(float width, float height, float balusterPitch) {
                                           {r * 0.95f, tall, true},
                                           {0, tall}},
                                          1);
-    const Mesh baluster = lathe(turned, 9);
+    const Mesh baluster = lathe(turned, 8);
     const int count = std::max(1, static_cast<int>(width / balusterPitch));
     for (int i = 0; i < count; ++i)
         append(mesh, baluster, kTrim,
@@ -180,11 +180,11 @@ Mesh groinVault(float width, float depth, float rise, float band) {
     const float thick = 0.055f;
     for (const float sign : {-1.0f, 1.0f}) {
         std::vector<Vec3> path;
-        for (int i = 0; i <= 14; ++i) {
-            const float t = spaced(static_cast<float>(i) / 14) - 0.5f;
+        for (int i = 0; i <= 12; ++i) {
+            const float t = spaced(static_cast<float>(i) / 12) - 0.5f;
             path.push_back({t * width, heightAt(t * width, t * depth) - thick * 0.2f, sign * t * depth});
         }
-        append(mesh, tube(path, std::vector<float>(path.size(), thick), 5, false), kTrim);
+        append(mesh, tube(path, std::vector<float>(path.size(), thick), 4, false), kTrim);
     }
     for (int side = 0; side < 4; ++side) {
         const float span = side % 2 == 0 ? width : depth, across = side % 2 == 0 ? depth : width;
@@ -194,7 +194,7 @@ Mesh groinVault(float width, float depth, float rise, float band) {
     append(mesh,
            lathe(smoothProfile(
                      {{0, rise - 0.14f}, {0.07f, rise - 0.13f}, {0.15f, rise - 0.09f}, {0.17f, rise - 0.02f, true}}, 2),
-                 14),
+                 9),
            kTrim);
     return mesh;
 }
@@ -217,15 +217,15 @@ Mesh archDoor(float spring, float radius) {
     for (const float y : {0.35f, spring - 0.15f}) {
         append(mesh, roundedBox({2 * radius, 0.09f, 0.012f}, 0.004f, 1), kMetal, placed({0, y, 0.03f}));
         for (int i = 0; i < planks; ++i)
-            append(mesh, lathe({{0.016f, 0}, {0.013f, 0.007f}, {0, 0.011f}}, 8), kMetal,
+            append(mesh, lathe({{0.016f, 0}, {0.013f, 0.007f}, {0, 0.011f}}, 5), kMetal,
                    placed({-radius + wide * (static_cast<float>(i) + 0.5f), y, 0.036f}, {90, 0, 0}));
     }
     std::vector<Vec3> ring;
-    for (int k = 0; k <= 20; ++k) {
-        const float a = 2 * kPi * static_cast<float>(k) / 20;
+    for (int k = 0; k <= 14; ++k) {
+        const float a = 2 * kPi * static_cast<float>(k) / 14;
         ring.push_back({0.12f + 0.07f * std::sin(a), 1.02f - 0.07f * std::cos(a), 0.045f});
     }
-    append(mesh, tube(ring, std::vector<float>(ring.size(), 0.009f), 8, false), kMetal);
+    append(mesh, tube(ring, std::vector<float>(ring.size(), 0.009f), 5, false), kMetal);
     return mesh;
 }
 

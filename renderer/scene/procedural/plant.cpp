@@ -74,12 +74,12 @@ private:
                                     {r * 0.82f, h * 0.8f, true},
                                     {0, h * 0.8f}},
                                    2),
-                     40),
+                     32),
                kPot);
         const auto salt = static_cast<uint32_t>(dice.below(1000));
         append(mesh,
                gridSurface(
-                   36, 10,
+                   24, 5,
                    [&](float u, float v) {
                        const float a = -2 * kPi * u, q = r * 0.93f * v;
                        const Vec3 p(q * std::cos(a), 0, q * std::sin(a));
