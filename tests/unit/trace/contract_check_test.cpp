@@ -1,0 +1,159 @@
+// The checker of the signals' contract, checked: each rule breaks when its signal is damaged, and no other does.
+#include "trace/contract_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "support/transport_scene.h"
+
+namespace lumi {
+namespace {
+
+using namespace test;
+
+constexpr Extent2 kExtent{40, 30};
+
+/// A frame, and where to damage it: `surface` is a diffuse one, `sky` shows nothing.
+struct Frame {
+    Signals signals;
+    Pixel surface, sky;
+};
+
+struct Damage {
+    const char* what;
+    const char* rule;  ///< part of the rule that has to break
+    std::function<void(Frame&)> apply;
+};
+
+class ContractCheck : public testing::Test {
+protected:
+    void SetUp() override {
+        TinyScene tiny;
+        tiny.add(floorMesh(8), lambert(Vec3(0.7f, 0.5f, 0.4f)));
+        tiny.add(sphereMesh(0.6f, 48, 24), metal(0.9f, 0.2f), translation(Vec3(-0.9f, 0.6f, 0)));
+        tiny.scene.environment.constant = Vec3(0.3f, 0.4f, 0.5f);
+        tracer_.bind(tiny.pose());
+    }
+    FrameSampling sampling(Jitter jitter) const {
+        FrameSampling s = frameOf(lookFrom(Vec3(0.5f, 1.5f, 4), Vec3(0, 0.9f, 0), 50), kExtent, 2, PathSettings(),
+                                  contractSignals(), 3);
+        s.previousCamera = poseCamera(lookFrom(Vec3(0.4f, 1.5f, 4), Vec3(0, 0.8f, 0), 50), kExtent);
+        s.jitter = jitter;
+        s.frame = 1, s.firstSample = 2;
+        return s;
+    }
+    Frame frame(const FrameSampling& sampling) {
+        Frame f;
+        EXPECT_TRUE(tracer_.sample(sampling, f.signals));
+        f.sky = {-1, -1}, f.surface = {-1, -1};
+        for (int y = 0; y < kExtent.height; ++y)
+            for (int x = 0; x < kExtent.width; ++x) {
+                const uint32_t object = f.signals.ids(Signal::ObjectId).at(0, x, y);
+                if (object == 0) f.sky = {x, y};
+                if (object == 1 && f.surface.x < 0) f.surface = {x, y};
+            }
+        EXPECT_GE(f.sky.x, 0);
+        EXPECT_GE(f.surface.x, 0);
+        return f;
+    }
+    /// Exactly the rule that holds `damage.rule` breaks; it says in how many pixels and where.
+    void expectBreaks(const Damage& damage, const FrameSampling& sampling) {
+        SCOPED_TRACE(damage.what);
+        Frame f = frame(sampling);
+        damage.apply(f);
+        bool found = false;
+        for (const ContractFinding& finding : checkSignals(f.signals, sampling, tracer_)) {
+            const bool meant = finding.rule.find(damage.rule) != std::string::npos;
+            EXPECT_EQ(finding.holds(), !meant) << finding.text();
+            if (!meant) continue;
+            found = true;
+            EXPECT_NE(finding.text().find("broken in"), std::string::npos) << finding.text();
+        }
+        EXPECT_TRUE(found) << "no rule is called " << damage.rule;
+    }
+
+    Tracer tracer_;
+};
+
+float& value(Frame& f, Signal signal, int channel, Pixel p) { return f.signals[signal].at(channel, p.x, p.y); }
+
+TEST_F(ContractCheck, AnUndamagedFrameHolds) {
+    for (const Jitter jitter : {Jitter::PerPixel, Jitter::PerFrame, Jitter::None}) {
+        const FrameSampling s = sampling(jitter);
+        int checked = 0;
+        for (const ContractFinding& finding : checkSignals(frame(s).signals, s, tracer_)) {
+            EXPECT_TRUE(finding.holds()) << finding.text();
+            checked += finding.checked > 0;
+        }
+        EXPECT_EQ(checked, 12) << "each rule has something to check";
+    }
+}
+
+TEST_F(ContractCheck, EachDamagedColourBreaksItsRule) {
+    const Damage damages[] = {
+        {"an infinity", "is finite", [](Frame& f) { value(f, Signal::Indirect, 1, f.surface) = kInfinity; }},
+        {"a NaN", "is finite",
+         [](Frame& f) { value(f, Signal::SampleVariance, 2, f.sky) = std::numeric_limits<float>::quiet_NaN(); }},
+        {"albedo above 1", "albedo lies", [](Frame& f) { value(f, Signal::Albedo, 0, f.sky) = 1.5f; }},
+        {"negative albedo", "albedo lies", [](Frame& f) { value(f, Signal::Albedo, 2, f.sky) = -0.1f; }},
+        {"specular albedo", "specularAlbedo lies", [](Frame& f) { value(f, Signal::SpecularAlbedo, 0, f.sky) = 1.5f; }},
+        {"roughness", "roughness lies", [](Frame& f) { value(f, Signal::Roughness, 0, f.surface) = 1.01f; }},
+        {"visibility", "visibility lies", [](Frame& f) { value(f, Signal::Visibility, 0, f.surface) = -0.01f; }},
+        {"the sum", "radiance", [](Frame& f) { value(f, Signal::Noisy, 0, f.surface) += 1; }},
+        {"emission", "radiance", [](Frame& f) { value(f, Signal::Emission, 1, f.sky) *= 1.1f; }},
+        {"direct diffuse", "radiance", [](Frame& f) { value(f, Signal::DirectDiffuse, 2, f.surface) += 1; }},
+        {"indirect diffuse", "radiance", [](Frame& f) { value(f, Signal::IndirectDiffuse, 0, f.surface) += 1; }},
+        {"direct specular", "radiance", [](Frame& f) { value(f, Signal::DirectSpecular, 0, f.surface) += 1; }},
+        {"indirect specular", "radiance", [](Frame& f) { value(f, Signal::IndirectSpecular, 0, f.surface) += 1; }},
+        {"albedo of a lit surface", "radiance", [](Frame& f) { value(f, Signal::Albedo, 0, f.surface) *= 0.9f; }},
+    };
+    const FrameSampling s = sampling(Jitter::PerPixel);
+    for (const Damage& damage : damages) expectBreaks(damage, s);
+}
+
+TEST_F(ContractCheck, EachDamagedGeometryBreaksItsRule) {
+    const Damage damages[] = {
+        {"normal", "unit", [](Frame& f) { value(f, Signal::Normal, 1, f.surface) *= 1.01f; }},
+        {"geometric normal", "unit", [](Frame& f) { value(f, Signal::GeometricNormal, 1, f.surface) = 0; }},
+        {"object normal", "unit", [](Frame& f) { value(f, Signal::ObjectNormal, 1, f.surface) += 0.1f; }},
+        {"depth", "depth is", [](Frame& f) { value(f, Signal::Depth, 0, f.surface) *= 1.01f; }},
+        {"inverse depth", "depth is", [](Frame& f) { value(f, Signal::InverseDepth, 0, f.surface) *= 0.99f; }},
+        {"motion", "motion", [](Frame& f) { value(f, Signal::Motion, 0, f.surface) += 0.1f; }},
+        {"motion upside down", "motion", [](Frame& f) { value(f, Signal::Motion, 1, f.surface) *= -1; }},
+        {"object id", "ids exist",
+         [](Frame& f) { f.signals.ids(Signal::ObjectId).at(0, f.surface.x, f.surface.y) = 99; }},
+        {"material id", "ids exist",
+         [](Frame& f) { f.signals.ids(Signal::MaterialId).at(0, f.surface.x, f.surface.y) = 0; }},
+        {"a hole", "sky has", [](Frame& f) { f.signals.ids(Signal::ObjectId).at(0, f.surface.x, f.surface.y) = 0; }},
+        {"near sky", "sky has", [](Frame& f) { value(f, Signal::Depth, 0, f.sky) = 1e6f; }},
+        {"sky with a place", "sky has", [](Frame& f) { value(f, Signal::Position, 1, f.sky) = 1; }},
+        {"sky with a normal", "sky has", [](Frame& f) { value(f, Signal::Normal, 1, f.sky) = 1; }},
+    };
+    const FrameSampling s = sampling(Jitter::PerPixel);
+    for (const Damage& damage : damages) expectBreaks(damage, s);
+}
+
+TEST_F(ContractCheck, JitterThatIsNotAsSaidIsFound) {
+    // Sideways in the image, so that the depth stays what it was.
+    const auto shift = [](Frame& f, const FrameSampling& s, Pixel p, float pixels) {
+        const float step = pixels * s.camera.pixelSize() * value(f, Signal::Depth, 0, p);
+        for (int c = 0; c < 3; ++c) value(f, Signal::Position, c, p) += step * s.camera.worldFromCamera[0][c];
+    };
+    const FrameSampling perFrame = sampling(Jitter::PerFrame), perPixel = sampling(Jitter::PerPixel);
+    expectBreaks({"one pixel has another offset", "one sub-pixel offset",
+                  [&](Frame& f) { shift(f, perFrame, f.surface, 0.2f); }},
+                 perFrame);
+    expectBreaks({"every offset is too far right", "uniform",
+                  [&](Frame& f) {
+                      for (int y = 0; y < kExtent.height; ++y)
+                          for (int x = 0; x < kExtent.width; ++x)
+                              if (f.signals.ids(Signal::ObjectId).at(0, x, y) != 0) shift(f, perPixel, {x, y}, 0.4f);
+                  }},
+                 perPixel);
+}
+
+}  // namespace
+}  // namespace lumi
