@@ -44,7 +44,8 @@ void Material::describeTransmission(ParameterVisitor& v) {
     v.when(transmission > 0, [&] {
         v.number("thickness", thickness,
                  {.label = "Thickness", .max = 1000, .unit = "m",
-                  .help = "0 is a thin wall that does not refract, above 0 the boundary of a solid.", .redo = Redo::Samples});
+                  .help = "0 is a thin wall that does not refract; any value above 0 makes the boundary of a solid.",
+                  .redo = Redo::Samples});
         v.colour("attenuation-color", attenuationColor,
                  {.label = "Attenuation colour", .help = "What white becomes after the attenuation distance."});
         describeUpTo(v, "attenuation-distance", attenuationDistance,
