@@ -26,7 +26,19 @@ std::string fileName(const std::string& instance) {
 
 /// `<scene>.<module>.exr` in the current folder, with a number if that exists.
 std::string defaultOutput(const fs::path& scene, const std::string& instance) {
-    return unusedPath(scene.stem().string() + "." + fileName(instance) + ".exr").string();
+    const std::string name = unusedPath(scene.stem().string() + "." + fileName(instance) + ".exr").string();
+    std::string pattern;  // a name of --out, where % stands before the frame's number
+    for (const char c : name) pattern += c == '%' ? "%%" : std::string(1, c);
+    return pattern;
+}
+
+/// The instance whose image the last frame of a replay shows; `instance` is that of the first.
+std::string lastInstance(const Replay& replay, int view, std::string instance) {
+    const std::string id = fmt::format("view.{}.module", view);
+    for (const auto& [frame, values] : replay.sets)
+        if (frame <= replay.last && values.contains(id) && values[id].is_string())
+            instance = values[id].get<std::string>();
+    return instance;
 }
 
 double median(std::vector<double> values) {
@@ -89,12 +101,14 @@ public:
         const fs::path file = findScene(options_.scene.scene);
         auto scene = openScene(file, options_.scene, log_, stop_);
         Document document = makeDocument(scene, options_.scene);
-        const OutputChoice choice{0, options_.buffers, options_.half};
-        start(document, file, choice, {options_.scene.scene, scene->contentDigest});
+        choice_ = {0, options_.buffers, options_.half};
+        const std::string& instance = document.view(choice_.view).module;
+        BufferSelection::parse(choice_.buffers, instance, "--buffers");
+        start(document, file, instance, {options_.scene.scene, scene->contentDigest});
 
         const FrameRange& range = options_.frames;
         const double fps = document.render().fps;
-        const int64_t first = std::max<int64_t>(range.begin - options_.warmUp, 0);
+        const int64_t first = range.begin - options_.warmUp;
         const bool timed = range.end - first > 1 || first > 0;
         last_ = range.end - 1, first_ = first;
         for (int64_t number = first; number < range.end; ++number) {
@@ -119,7 +133,8 @@ public:
         Document document(scene);
         const std::string where = options_.replay.string();
         applyState(document, replay.start);
-        start(document, file, OutputChoice::parse(replay.output, where), replay.scene);
+        choice_ = OutputChoice::parse(replay.output, where);
+        start(document, file, lastInstance(replay, choice_.view, document.view(choice_.view).module), replay.scene);
         first_ = replay.first, last_ = replay.last;
         for (FrameNumber number = replay.first; number <= replay.last; ++number) {
             if (const json* values = replay.valuesOf(number)) applyState(document, *values);
@@ -129,15 +144,13 @@ public:
     }
 
 private:
-    void start(const Document& document, const fs::path& file, const OutputChoice& choice, SceneReference reference) {
+    /// `instance` is the one whose image the last frame shows, for the default name.
+    void start(const Document& document, const fs::path& file, const std::string& instance, SceneReference reference) {
         printMessages(log_, machine_);
         std::vector<std::string> names = options_.out;
-        const std::string instance = document.view(choice.view).module;
         if (names.empty()) names.push_back(defaultOutput(file, instance));
-        buffers_ = BufferSelection::parse(choice.buffers, instance, "--buffers");
-        outputs_ = std::make_unique<RenderOutputs>(names, choice, document.render().fps);
+        outputs_ = std::make_unique<RenderOutputs>(names, choice_, document.render().fps, log_);
         states_ = StateLog(std::move(reference));
-        instance_ = instance;
         const RenderSettings& render = document.render();
         checkMemory(fmt::format("rendering {}x{}", render.width, render.height),
                     uint64_t(400) * static_cast<uint64_t>(render.width) * static_cast<uint64_t>(render.height));
@@ -149,9 +162,12 @@ private:
         const bool last = number == last_;
         FrameRequest request{document, number, cut, {}, {}};
         if (written && outputs_->wantsLayers(last)) {
-            request.signals = buffers_.signals;
+            // A replay may have changed the module since its first frame.
+            const std::string& instance = document.view(choice_.view).module;
+            const BufferSelection buffers = buffersOf(instance);
+            request.signals = buffers.signals;
             request.signals.add(Signal::Depth);
-            request.taps[instance_] = buffers_.taps;
+            request.taps[instance] = buffers.taps;
         }
         const std::optional<FrameOutput> frame = drawWithProgress(request);
         if (!frame) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
@@ -183,13 +199,22 @@ private:
         return 0;
     }
 
-    /// Values that do not fit are the file's fault, not the command's.
-    void applyState(Document& document, const json& values) const {
+    /// What does not fit is the replayed file's fault, not the command's.
+    template <class Body>
+    auto blamingFile(Body body) const {
         try {
-            document.apply(values, options_.replay.string());
+            return body();
         } catch (const Error& error) {
-            throw Error(error.kind() == ErrorKind::Usage ? ErrorKind::BadInput : error.kind(), error.text());
+            const bool fromFile = !options_.replay.empty() && error.kind() == ErrorKind::Usage;
+            throw Error(fromFile ? ErrorKind::BadInput : error.kind(), error.text());
         }
+    }
+    void applyState(Document& document, const json& values) const {
+        blamingFile([&] { document.apply(values, options_.replay.string()); });
+    }
+    BufferSelection buffersOf(const std::string& instance) const {
+        const std::string where = options_.replay.empty() ? "--buffers" : options_.replay.string();
+        return blamingFile([&] { return BufferSelection::parse(choice_.buffers, instance, where); });
     }
 
     /// Where the replayed scene is now: as given beside --replay, as it was called then, or beside the file.
@@ -213,10 +238,9 @@ private:
     std::stop_token stop_;
     std::optional<FrameEngine> engine_;  ///< made when the instruction set is known
     std::unique_ptr<RenderOutputs> outputs_;
-    BufferSelection buffers_;
+    OutputChoice choice_;
     StateLog states_;
     Summary summary_;
-    std::string instance_;
     int64_t first_ = 0, last_ = 0;
     Timer total_;
 };

@@ -15,8 +15,9 @@ namespace lumi {
 /// frame. Nothing is left half written.
 class RenderOutputs {
 public:
-    /// Checks every name before the first ray. Throws Error(Usage).
-    RenderOutputs(const std::vector<std::string>& names, const OutputChoice& choice, double fps);
+    /// Checks every name before the first ray. Without an ffmpeg program a video becomes numbered PNGs, and a warning.
+    /// Throws Error(Usage).
+    RenderOutputs(const std::vector<std::string>& names, const OutputChoice& choice, double fps, MessageLog& log);
 
     /// Does the frame go into an EXR, so that its layers have to be there?
     bool wantsLayers(bool last) const;
@@ -31,7 +32,7 @@ private:
         bool numbered = false;
     };
     struct Video {
-        std::filesystem::path path, partial;
+        std::filesystem::path path;
         std::unique_ptr<VideoPipe> pipe;
     };
     void writeVideo(const Output& output, const FrameOutput& frame, const Document& document);

@@ -36,7 +36,8 @@ std::string numberedName(const std::string& pattern, int64_t number, bool* hasNu
     return name;
 }
 
-RenderOutputs::RenderOutputs(const std::vector<std::string>& names, const OutputChoice& choice, double fps)
+RenderOutputs::RenderOutputs(const std::vector<std::string>& names, const OutputChoice& choice, double fps,
+                             MessageLog& log)
     : choice_(choice), fps_(fps) {
     for (const std::string& name : names) {
         Output output{name, lowerExtension(name), false};
@@ -45,9 +46,13 @@ RenderOutputs::RenderOutputs(const std::vector<std::string>& names, const Output
             throwUsage({"cannot write this kind of file", name, ".exr, .png or .mp4", '"' + output.extension + '"'});
         if (output.extension == ".mp4" && output.numbered)
             throwUsage({"a video holds all frames", name, "a name without %d", ""});
-        if (output.extension == ".mp4" && !VideoPipe::available())
-            throwUsage({"writing video needs the ffmpeg program", name, "ffmpeg installed, or --out frame.%04d.png", ""});
         if (fs::is_directory(name)) throwUsage({"is a folder", name, "a file name", ""});
+        if (output.extension == ".mp4" && !VideoPipe::available()) {
+            output = {fs::path(name).replace_extension(".%04d.png").string(), ".png", true};
+            log.warning(fmt::format("{}: no ffmpeg program to write video with; writing {}", name, output.name));
+        }
+        if (output.extension == ".mp4" && fs::exists(numberedName(name, 0)))
+            throwUsage({"exists already", name, "a new file", ""});
         outputs_.push_back(output);
     }
 }
@@ -77,10 +82,7 @@ void RenderOutputs::writeVideo(const Output& output, const FrameOutput& frame, c
     DisplayInfo info;
     const auto pixels = drawView(frame, document.view(choice_.view), info);
     if (video == videos_.end()) {
-        fs::path partial = path;
-        partial.replace_extension(".partial.mp4");
-        fs::remove(partial);
-        videos_.push_back({path, partial, std::make_unique<VideoPipe>(partial, pixels->extent, fps_)});
+        videos_.push_back({path, std::make_unique<VideoPipe>(path, pixels->extent, fps_)});
         video = videos_.end() - 1;
     }
     video->pipe->write(*pixels);
@@ -89,7 +91,6 @@ void RenderOutputs::writeVideo(const Output& output, const FrameOutput& frame, c
 void RenderOutputs::finish() {
     for (Video& video : videos_) {
         video.pipe->finish();
-        fs::rename(video.partial, video.path);
         files_.push_back(video.path.string());
     }
     videos_.clear();

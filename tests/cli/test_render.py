@@ -6,7 +6,7 @@ import subprocess
 import time
 import unittest
 
-from lumiscope import CommandTest, PROGRAM, TINY, exr_header, main
+from lumiscope import CommandTest, PROGRAM, SOURCE, TINY, exr_header, main
 
 QUIET = [*TINY, "--quiet"]
 
@@ -106,10 +106,35 @@ class Render(CommandTest):
     def test_video(self):
         self.good("render", "cornell", *QUIET, "--frames", 4, "--out", "a.mp4")
         self.assertEqual(self.files(), ["a.mp4"])
-        self.assertGreater(len(self.bytes("a.mp4")), 500)
+        video = self.bytes("a.mp4")
+        self.assertGreater(len(video), 500)
+        self.refused(2, ["a.mp4", "exists"], "render", "cornell", *QUIET, "--frames", 4, "--out", "a.mp4")
+        self.assertEqual(self.bytes("a.mp4"), video)
 
-    def test_without_ffmpeg_a_video_is_refused_at_once(self):
-        self.refused(2, ["ffmpeg", "a.mp4"], "render", "cornell", *QUIET, "--out", "a.mp4", PATH=str(self.folder))
+    @unittest.skipUnless(shutil.which("ffmpeg"), "no ffmpeg program")
+    def test_a_video_leaves_other_files_alone(self):
+        (self.folder / "a.partial.mp4").write_text("mine")
+        self.good("render", "cornell", *QUIET, "--frames", 2, "--out", "a.mp4")
+        self.assertEqual(self.files(), ["a.mp4", "a.partial.mp4"])
+        self.assertEqual(self.bytes("a.partial.mp4"), b"mine")
+
+    def test_without_ffmpeg_a_video_becomes_pictures(self):
+        result = self.good("render", "cornell", *TINY, "--frames", 2, "--out", "walk.mp4", "--json",
+                           PATH=str(self.folder))
+        self.assertEqual(self.files(), ["walk.0000.png", "walk.0001.png"])
+        self.assertEqual(result.json["files"], self.files())
+        self.assertTrue(any("ffmpeg" in warning and "walk.mp4" in warning for warning in result.json["warnings"]))
+        self.assertIn("warning: walk.mp4", result.err)
+
+    def test_a_scene_may_be_called_anything(self):
+        shutil.copy(SOURCE / "scenes/cornell.json", self.folder / "100% d%d.json")
+        self.good("render", "100% d%d.json", *QUIET)
+        self.assertEqual(self.files(), ["100% d%d.accumulate.exr", "100% d%d.json"])
+
+    def test_one_frame_may_have_a_time(self):
+        self.good("render", "parade", *QUIET, "--set", "time=0.5", "--out", "set.png")
+        self.good("render", "parade", *QUIET, "--out", "start.png")
+        self.assertNotEqual(pixels(self.bytes("set.png")), pixels(self.bytes("start.png")))
 
     def test_an_interrupt_ends_it(self):
         process = subprocess.Popen([PROGRAM, "render", "cornell", "--spp", "65536", "--out", "a.png"], cwd=self.folder,

@@ -42,6 +42,22 @@ class Replay(CommandTest):
         state = json.loads(png_text(self.bytes("m0005.png"), "lumiscope"))
         self.assertEqual((state["start"]["frame"], state["frame"]), (4, 5), "history was dropped by the move")
 
+    def test_a_module_that_changed_on_the_way(self):
+        """As the window records it when another method is chosen between two frames."""
+        self.good("render", "cornell", *SMALL, "--frames", 2, "--set", "accumulate.reset=cut-only", "--buffers",
+                  "sampleCount", "--out", "a.exr", "--out", "a.png")
+        state = json.loads(png_text(self.bytes("a.png"), "lumiscope"))
+        state["start"]["set"]["view.0.module"] = "none"
+        state["frames"] = [{"frame": 1, "set": {"view.0.module": "accumulate"}}]
+        (self.folder / "changed.json").write_text(json.dumps(state))
+        self.good("render", "--replay", "changed.json", "--quiet", "--out", "b.exr")
+        self.assertIn("accumulate-sampleCount.Y", exr_header(self.bytes("b.exr"))["channels"])
+        self.good("render", "--replay", "changed.json", "--quiet")
+        self.assertIn("cornell.accumulate.exr", self.files())
+        state["frames"] = []
+        (self.folder / "other.json").write_text(json.dumps(state))
+        self.refused(3, ["sampleCount", "other.json"], "render", "--replay", "other.json", "--out", "c.exr")
+
     def test_the_state_is_the_same_in_both_and_says_nothing_of_the_machine(self):
         self.good("render", "cornell", *SMALL, "--threads", 1, "--out", "a.png", "--out", "a.exr")
         text = png_text(self.bytes("a.png"), "lumiscope")
