@@ -1,53 +1,14 @@
 #include "app/cli.h"
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
+#include "app/help_text.h"
 #include "app/option_text.h"
 #include "base/error.h"
-#include "reconstruct/catalog.h"
-#include "scene/load.h"
 
 namespace lumi {
 namespace {
-
-constexpr const char* kVersionText = "lumiscope 0.1.0";
-
-constexpr const char* kExitCodes =
-    "Exit codes: 0 good; 1 a check did not hold; 2 usage, unknown scene, module or id; 3 bad input, replayed scene\n"
-    "changed; 4 no display or OpenGL; 5 memory limit, disk full; 130 interrupted.";
-
-std::string sceneList() {
-    std::string text = "Scenes: a path (.json .gltf .glb .obj, or an .hdr/.exr sky), or one of:\n";
-    for (const SceneEntry& entry : listScenes()) text += fmt::format("  {:<14}{}\n", entry.name, entry.title);
-    return text;
-}
-
-std::string moduleList() {
-    std::string text = "Modules:\n";
-    for (const ModuleEntry& entry : moduleCatalog()) text += fmt::format("  {:<14}{}\n", entry.id, entry.title);
-    return text + "  An instance is a module with parameters of its own: svgf, svgf@b.\n";
-}
-
-std::string mainFooter() {
-    return "Examples:\n"
-           "  lumiscope                                    the window, on the built-in atrium\n"
-           "  lumiscope room                               the window, on another scene\n"
-           "  lumiscope render cornell --spp 64 --out cornell.exr --out cornell.png\n"
-           "  lumiscope list parameters                    everything that --set knows\n\n" +
-           sceneList() + "\n" + kExitCodes;
-}
-
-std::string renderFooter() {
-    return "Examples:\n"
-           "  lumiscope render cornell --spp 256 --out cornell.png\n"
-           "  lumiscope render parade --frames 0..120 --fps 30 --out parade.mp4\n"
-           "  lumiscope render atrium --module none --frames 8 --buffers all --out atrium.%04d.exr\n"
-           "  lumiscope render room --set path.max-depth=3 --set camera.aperture=0.02 --size 640x360\n"
-           "  lumiscope render --replay cornell.png --out again.png\n\n" +
-           sceneList() + moduleList() + "\n" + kExitCodes;
-}
 
 void addShared(CLI::App& app, SharedText& text, SceneOptions& scene) {
     app.add_option("--module", scene.modules, "Method that makes the image, as `list modules` names it")
@@ -100,13 +61,14 @@ void addMachine(CLI::App& app, MachineOptions& machine, bool computes) {
 class Parser {
 public:
     Parser() : app_("Path-traces scenes and reconstructs clean, stable images from few samples.", "lumiscope") {
-        app_.set_version_flag("--version", kVersionText);
+        app_.set_version_flag("--version", versionText());
         app_.set_help_flag("-h,--help", "Print this help");
         app_.footer(mainFooter);
         app_.require_subcommand(0, 1);
         app_.get_formatter()->column_width(34);
         addWindow();
         addRender();
+        addCompare();
         addInfo();
         addList();
         addView();
@@ -116,7 +78,7 @@ public:
         try {
             app_.parse(argc, argv);
         } catch (const CLI::CallForVersion&) {
-            return printed(std::string(kVersionText) + "\n");
+            return printed(std::string(versionText()) + "\n");
         } catch (const CLI::CallForHelp&) {
             const auto used = app_.get_subcommands();
             return printed(used.empty() ? app_.help() : used.front()->help("lumiscope"));
@@ -170,23 +132,50 @@ private:
         app->footer(renderFooter);
     }
 
+    void addCompare() {
+        CLI::App* app = compare_ = app_.add_subcommand("compare", "Measure how far an image is from its reference");
+        CompareOptions& compare = line_.compare;
+        app->add_option("image", compare.image, "Image to judge: .exr, .hdr, .png, .jpg, .bmp or .tga")
+            ->required()
+            ->type_name("IMAGE");
+        app->add_option("reference", compare.reference, "What it should be, of the same size")
+            ->required()
+            ->type_name("REFERENCE");
+        app->add_option("--metrics", metrics_, "Only these, as `list metrics` names them (all)")
+            ->type_name("NAME,...")->take_last();
+        app->add_option("--maps", compare.maps, "Folder for error maps, .exr and in false colour .png; made if missing")
+            ->type_name("DIR")->take_last();
+        app->add_option("--crop", crop_, "Only this part of both, in pixels from the top left")
+            ->type_name("X,Y,W,H")->take_last();
+        app->add_option("--mask", compare.mask, "Image of the same size: only where its luminance is above 0.5")
+            ->type_name("FILE")->take_last();
+        app->add_option("--exposure", compare.exposureEv, "Stops, for metrics that judge the image as shown (0)")
+            ->type_name("EV")
+            ->check(CLI::Range(-100.0, 100.0).description(""))
+            ->take_last();
+        addMachine(*app, line_.machine, true);
+        app->footer(compareFooter());
+    }
+
     void addInfo() {
         CLI::App* app = info_ = app_.add_subcommand("info", "Tell what a scene holds, and every warning");
         app->add_option("scene", infoScene_, "Scene to read: a name or a path")->required()->type_name("SCENE");
-        app->add_option("--set", infoText_.set, "scene.index=N or scene.variant=NAME")
+        app->add_option("--set", infoText_.set, "Set any parameter, as scene.index=N; repeatable")
             ->type_name("ID=VALUE")
             ->expected(1)
             ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        app->add_flag("--check", line_.check,
+                      "Trace two small frames and verify every rule that filters rely on; exit 1 if one is broken");
         addMachine(*app, line_.machine, true);
-        app->footer("Example:\n  lumiscope info atrium --json");
+        app->footer("Examples:\n  lumiscope info atrium --json\n  lumiscope info model.glb --check");
     }
 
     void addList() {
-        CLI::App* app = list_ = app_.add_subcommand("list", "List what there is: scenes, modules, buffers, parameters");
-        app->add_option("what", line_.list.what, "scenes, modules, buffers or parameters")
+        CLI::App* app = list_ = app_.add_subcommand("list", "List what there is: scenes, modules, buffers, parameters, metrics");
+        app->add_option("what", line_.list.what, "scenes, modules, buffers, parameters or metrics")
             ->required()
             ->type_name("WHAT")
-            ->check(CLI::IsMember({"scenes", "modules", "buffers", "parameters"}).description(""));
+            ->check(CLI::IsMember({"scenes", "modules", "buffers", "parameters", "metrics"}).description(""));
         app->add_option("--module", line_.list.module, "Only what belongs to this module")->type_name("INSTANCE");
         addMachine(*app, line_.machine, false);
         app->footer("Examples:\n  lumiscope list parameters --module accumulate\n  lumiscope list buffers --json");
@@ -209,6 +198,7 @@ private:
 
     CommandLine finished() {
         if (render_->parsed()) finishRender();
+        else if (compare_->parsed()) finishCompare();
         else if (info_->parsed()) finishInfo();
         else if (list_->parsed()) line_.command = Command::List;
         else if (view_->parsed()) finishView();
@@ -224,6 +214,7 @@ private:
             throwUsage({"render runs one module", "--module", "one instance", ""});
         if (!frames_.empty()) render.frames = parseFrames(frames_);
         if (!warmUp_.empty()) render.warmUp = parseWhole(warmUp_, "--warm-up", "a number of frames", 0);
+        checkTime(render);
         render.progress = progress_ == "always" ? Progress::Always : progress_ == "never" ? Progress::Never : Progress::Auto;
         if (render.scene.scene.empty() && render.replay.empty())
             throwUsage({"render needs a scene", "", "lumiscope render SCENE, or --replay FILE", ""});
@@ -231,6 +222,25 @@ private:
                                        !render.buffers.empty() || render.half))
             throwUsage({"everything about the image comes from the file", "--replay",
                         "only SCENE (where it is now), --out and options of the machine beside it", ""});
+    }
+
+    /// The frames' numbers give the time, and there are none before the first.
+    static void checkTime(const RenderOptions& render) {
+        if (render.warmUp > render.frames.begin)
+            throwUsage({"there are not so many frames before the first", "--warm-up",
+                        "at most " + std::to_string(render.frames.begin), std::to_string(render.warmUp)});
+        if (render.frames.end <= 1) return;
+        for (const TypedValue& value : render.scene.values)
+            if (value.id == "time")
+                throwUsage({"the number of a frame gives its time", value.option, "time only without --frames", ""});
+    }
+
+    void finishCompare() {
+        line_.command = Command::Compare;
+        line_.compare.metrics = splitList(metrics_);
+        if (!crop_.empty()) line_.compare.crop = parseCrop(crop_, "--crop");
+        line_.compare.json = line_.machine.json;
+        line_.compare.quiet = line_.machine.quiet;
     }
 
     void finishInfo() {
@@ -250,11 +260,11 @@ private:
     }
 
     CLI::App app_;
-    CLI::App *render_ = nullptr, *info_ = nullptr, *list_ = nullptr, *view_ = nullptr;
+    CLI::App *render_ = nullptr, *compare_ = nullptr, *info_ = nullptr, *list_ = nullptr, *view_ = nullptr;
     CommandLine line_;
     SharedText windowText_, renderText_, infoText_, viewText_;
     SceneOptions viewScene_;
-    std::string infoScene_, frames_, warmUp_, progress_ = "auto", windowSize_;
+    std::string infoScene_, metrics_, crop_, frames_, warmUp_, progress_ = "auto", windowSize_;
     bool offscreen_ = false;
 };
 

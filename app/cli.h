@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/compare_command.h"
 #include "app/view.h"
 
 namespace lumi {
@@ -16,12 +17,6 @@ struct MachineOptions {
     std::string isa;          ///< empty: the best
     std::string memoryLimit;  ///< empty: the default
     bool json = false, quiet = false;
-};
-
-/// One document value as typed.
-struct TypedValue {
-    std::string id, text;
-    std::string option;  ///< where it was given, for messages: "--set", "--size"
 };
 
 /// What is rendered and how, as document values in the order in which they apply.
@@ -51,17 +46,19 @@ struct RenderOptions {
 };
 
 struct ListOptions {
-    std::string what;    ///< scenes, modules, buffers, parameters
+    std::string what;    ///< scenes, modules, buffers, parameters, metrics
     std::string module;  ///< only what belongs to it
 };
 
-enum class Command { Window, Render, Info, List, View, PrintAndExit };
+enum class Command { Window, Render, Compare, Info, List, View, PrintAndExit };
 
 struct CommandLine {
     Command command = Command::Window;
     MachineOptions machine;
     RenderOptions render;   ///< Render
+    CompareOptions compare; ///< Compare
     SceneOptions scene;     ///< Window, Info, View
+    bool check = false;     ///< Info
     ListOptions list;       ///< List
     ViewOptions view;       ///< View: script, out, samples, size; View and Window fill `start` from `scene`
     std::filesystem::path uiMap, captures;  ///< Window

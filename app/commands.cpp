@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "app/option_text.h"
 #include "base/error.h"
 #include "base/isa.h"
 #include "base/memory.h"
@@ -15,18 +16,19 @@ void applyMachine(const MachineOptions& machine) {
     if (!machine.memoryLimit.empty()) setMemoryLimit(parseBytes(machine.memoryLimit));
 }
 
+int parseSceneIndex(const TypedValue& value) {
+    const int64_t index = parseWhole(value.text, value.option, "scene.index as a whole number", -1);
+    if (index > 9999) throwUsage({"\"scene.index\" is out of range", value.option, "-1 to 9999", value.text});
+    return static_cast<int>(index);
+}
+
 std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const SceneOptions& options, MessageLog& log,
                                        std::stop_token stop) {
     LoadOptions load;
     load.stop = stop;
-    for (const auto& [id, text, option] : options.values) {
-        if (id == "scene.variant") load.variant = text;
-        if (id != "scene.index") continue;
-        try {
-            load.sceneIndex = std::stoi(text);
-        } catch (const std::exception&) {
-            throwUsage({"\"scene.index\" has the wrong type", option, "a whole number", '"' + text + '"'});
-        }
+    for (const TypedValue& value : options.values) {
+        if (value.id == "scene.variant") load.variant = value.text;
+        if (value.id == "scene.index") load.sceneIndex = parseSceneIndex(value);
     }
     return loadScene(file, log, load);
 }

@@ -12,7 +12,9 @@ namespace lumi {
 // Each command returns the program's exit code and throws Error; results go to standard output, all else to standard
 // error.
 int runRender(const RenderOptions& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop);
-int runInfo(const SceneOptions& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop);
+/// With `check` the signals' contract is verified too; 1 if a rule is broken.
+int runInfo(const SceneOptions& options, bool check, const MachineOptions& machine, MessageLog& log,
+            std::stop_token stop);
 int runList(const ListOptions& options, const MachineOptions& machine);
 
 /// Threads, instruction set and memory limit, before anything is computed.
@@ -21,6 +23,9 @@ void applyMachine(const MachineOptions& machine);
 /// Prints what has been reported on standard error, and from now on what is. A scene that fails to load is one line, so
 /// this is for those that loaded.
 void printMessages(MessageLog& log, const MachineOptions& machine);
+
+/// The whole number of a `scene.index`. Throws Error(Usage).
+int parseSceneIndex(const TypedValue& value);
 
 /// The scene that the options name, with the scene.index and scene.variant among their values.
 std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const SceneOptions& options, MessageLog& log,

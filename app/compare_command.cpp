@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -63,12 +64,12 @@ void writeMap(const std::filesystem::path& folder, const Metric& metric, const I
     writePng(folder / (std::string(metric.id) + ".png"), picture);
 }
 
-void printTable(const ImagePair& pair, const std::vector<std::pair<const Metric*, Measurement>>& results) {
+void printTable(const ImagePair& pair, const std::vector<std::pair<const Metric*, Measurement>>& results, bool quiet) {
     for (const auto& [metric, result] : results) {
         fmt::print("{:<10} {:<12.6g} {}\n", metric->id, result.value, metric->definition);
         for (const auto& [name, value] : result.details) fmt::print("{:<10} {} = {:.6g}\n", "", name, value);
     }
-    if (pair.nonFinitePixels > 0)
+    if (pair.nonFinitePixels > 0 && !quiet)
         fmt::print(stderr, "warning: {} pixels are NaN or infinite; they count in no metric\n", pair.nonFinitePixels);
 }
 
@@ -89,7 +90,7 @@ int runCompare(const CompareOptions& options) {
         if (map) writeMap(options.maps, *metric, results.back().second.map);
     }
     if (!options.json) {
-        printTable(pair, results);
+        printTable(pair, results, options.quiet);
         return 0;
     }
     nlohmann::ordered_json values, details = nlohmann::ordered_json::object();

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "app/commands.h"
+#include "app/signals_check.h"
 #include "base/memory.h"
 
 namespace lumi {
@@ -98,16 +100,44 @@ void printInfo(const json& info, const Scene& scene) {
     for (const json& warning : info["warnings"]) std::puts(("  " + warning.get<std::string>()).c_str());
 }
 
+json checksJson(const std::vector<FrameCheck>& checks) {
+    json all = json::array();
+    for (const FrameCheck& frame : checks)
+        for (const ContractFinding& finding : frame.findings)
+            all.push_back({{"rule", finding.rule},
+                           {"frame", frame.frame},
+                           {"holds", finding.holds()},
+                           {"violations", finding.violations},
+                           {"checked", finding.checked},
+                           {"worst_pixel", {finding.worst.x, finding.worst.y}},
+                           {"worst_value", finding.value},
+                           {"limit", finding.limit},
+                           {"unit", finding.unit}});
+    return all;
+}
+
+void printChecks(const std::vector<FrameCheck>& checks) {
+    for (const FrameCheck& frame : checks) {
+        std::puts(fmt::format("{:<12}{}", fmt::format("check {}", frame.frame), frame.what).c_str());
+        for (const ContractFinding& finding : frame.findings)
+            std::puts(fmt::format("  {:<8}{}", finding.holds() ? "good" : "BROKEN", finding.text()).c_str());
+    }
+}
+
 }  // namespace
 
-int runInfo(const SceneOptions& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop) {
+int runInfo(const SceneOptions& options, bool check, const MachineOptions& machine, MessageLog& log,
+            std::stop_token stop) {
     const std::filesystem::path file = findScene(options.scene);
     const auto scene = openScene(file, options, log, stop);
-    makeDocument(scene, options);
-    const json info = infoJson(*scene, file, log);
+    const Document document = makeDocument(scene, options);
+    const std::vector<FrameCheck> checks = check ? checkFrames(document, stop) : std::vector<FrameCheck>();
+    json info = infoJson(*scene, file, log);
+    if (check) info["checks"] = checksJson(checks);
     if (machine.json) std::puts(info.dump(2).c_str());
     else printInfo(info, *scene);
-    return 0;
+    if (check && !machine.json) printChecks(checks);
+    return std::all_of(checks.begin(), checks.end(), [](const FrameCheck& frame) { return frame.holds(); }) ? 0 : 1;
 }
 
 }  // namespace lumi

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "app/commands.h"
+#include "measure/measure.h"
 #include "params/json.h"
 #include "reconstruct/catalog.h"
 
@@ -52,6 +53,21 @@ void listModules(const std::string& only, const MachineOptions& machine) {
         if (!only.empty() && &findModule(only, "--module") != &entry) continue;
         all.push_back({{"id", entry.id}, {"title", entry.title}, {"paper", entry.paper}});
         rows.push_back({entry.id, *entry.paper ? fmt::format("{} [{}]", entry.title, entry.paper) : entry.title});
+    }
+    print(machine, all, rows);
+}
+
+void listMetrics(const MachineOptions& machine) {
+    json all = json::array();
+    std::vector<Row> rows;
+    for (const Metric& metric : metricCatalog()) {
+        all.push_back({{"id", metric.id},
+                       {"title", metric.title},
+                       {"definition", metric.definition},
+                       {"higher_is_better", metric.higherIsBetter},
+                       {"symmetric", metric.symmetric},
+                       {"has_map", metric.mapColours != nullptr}});
+        rows.push_back({metric.id, metric.title, metric.definition});
     }
     print(machine, all, rows);
 }
@@ -155,6 +171,7 @@ int runList(const ListOptions& options, const MachineOptions& machine) {
     if (options.what == "scenes") listSceneTable(machine);
     else if (options.what == "modules") listModules(options.module, machine);
     else if (options.what == "buffers") listBuffers(options.module, machine);
+    else if (options.what == "metrics") listMetrics(machine);
     else listParameterTable(options.module, machine);
     return 0;
 }

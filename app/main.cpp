@@ -9,6 +9,7 @@
 #include "app/view.h"
 #include "app/window.h"
 #include "base/error.h"
+#include "reconstruct/catalog.h"
 
 namespace lumi {
 namespace {
@@ -18,21 +19,28 @@ class InterruptGuard {
 public:
     InterruptGuard() {
         sigemptyset(&signals_);
-        sigaddset(&signals_, SIGINT);
-        sigaddset(&signals_, SIGTERM);
+        for (const int signal : {SIGINT, SIGTERM, kWake}) sigaddset(&signals_, signal);
         pthread_sigmask(SIG_BLOCK, &signals_, nullptr);  // before other threads begin, so that they inherit it
         thread_ = std::jthread([this](std::stop_token ends) {
-            const timespec pause{0, 100'000'000};
             while (!ends.stop_requested()) {
-                if (sigtimedwait(&signals_, nullptr, &pause) < 0) continue;
+                int signal = 0;
+                if (sigwait(&signals_, &signal) != 0 || signal == kWake) continue;
                 if (stop_.stop_requested()) _exit(static_cast<int>(ErrorKind::Interrupted));
                 stop_.request_stop();
             }
         });
     }
+    ~InterruptGuard() {
+        thread_.request_stop();
+        pthread_kill(thread_.native_handle(), kWake);
+    }
+    InterruptGuard(const InterruptGuard&) = delete;
+    InterruptGuard& operator=(const InterruptGuard&) = delete;
     std::stop_token token() const { return stop_.get_token(); }
 
 private:
+    static constexpr int kWake = SIGUSR1;  ///< ends the wait of our own thread
+
     sigset_t signals_;
     std::stop_source stop_;
     std::jthread thread_;
@@ -41,10 +49,11 @@ private:
 StartOptions startOptions(const SceneOptions& options) {
     StartOptions start;
     start.scene = findScene(options.scene.empty() ? "atrium" : options.scene);
-    for (const auto& [id, text, option] : options.values) {
-        if (id == "scene.variant") start.variant = text;
-        else if (id == "scene.index") start.sceneIndex = std::atoi(text.c_str());
-        else start.set.emplace_back(id, text);
+    for (const std::string& module : options.modules) findModule(module, "--module");
+    for (const TypedValue& value : options.values) {
+        if (value.id == "scene.variant") start.variant = value.text;
+        else if (value.id == "scene.index") start.sceneIndex = parseSceneIndex(value);
+        else start.set.push_back(value);
     }
     start.modules = options.modules;
     return start;
@@ -55,6 +64,7 @@ int runCommand(const CommandLine& line) {
     MessageLog log;
     switch (line.command) {
         case Command::PrintAndExit: std::fputs(line.text.c_str(), stdout); return 0;
+        case Command::Compare: return runCompare(line.compare);
         case Command::List: return runList(line.list, line.machine);
         case Command::View: {
             ViewOptions view = line.view;
@@ -76,7 +86,7 @@ int runCommand(const CommandLine& line) {
         }
         case Command::Info: {
             InterruptGuard interrupt;
-            return runInfo(line.scene, line.machine, log, interrupt.token());
+            return runInfo(line.scene, line.check, line.machine, log, interrupt.token());
         }
     }
     return 0;

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 
 #include "base/error.h"
+#include "session/document.h"
 
 namespace lumi {
 
@@ -41,9 +43,35 @@ FrameRange parseFrames(const std::string& text) {
     return range;
 }
 
+std::vector<std::string> splitList(const std::string& text) {
+    std::vector<std::string> parts;
+    for (size_t begin = 0; !text.empty() && begin <= text.size();) {
+        const size_t end = std::min(text.find(',', begin), text.size());
+        parts.push_back(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return parts;
+}
+
+std::array<int, 4> parseCrop(const std::string& text, const std::string& option) {
+    const char* expected = "X,Y,W,H in pixels, as 0,0,256,256";
+    const std::vector<std::string> parts = splitList(text);
+    if (parts.size() != 4) throwUsage({"not understood", option, expected, '"' + text + '"'});
+    std::array<int, 4> crop{};
+    for (size_t i = 0; i < crop.size(); ++i) {
+        const int64_t value = parseWhole(parts[i], option, expected, i < 2 ? 0 : 1);
+        if (value > 1 << 20) throwUsage({"too large", option, expected, '"' + text + '"'});
+        crop[i] = static_cast<int>(value);
+    }
+    return crop;
+}
+
 void addValues(const SharedText& text, SceneOptions& scene) {
     auto& values = scene.values;
-    for (size_t i = 0; i < scene.modules.size() && i < 2; ++i)
+    if (scene.modules.size() > static_cast<size_t>(kViewCount))
+        throwUsage({"too many", "--module", fmt::format("one for each of {} views", kViewCount),
+                    std::to_string(scene.modules.size())});
+    for (size_t i = 0; i < scene.modules.size(); ++i)
         values.push_back({fmt::format("view.{}.module", i), scene.modules[i], "--module"});
     if (!text.size.empty()) {
         const Extent2 size = parseSize(text.size, "--size");

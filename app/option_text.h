@@ -1,4 +1,8 @@
 #pragma once
+#include <array>
+#include <string>
+#include <vector>
+
 #include "app/cli.h"
 
 namespace lumi {
@@ -15,6 +19,10 @@ Extent2 parseSize(const std::string& text, const std::string& option);
 FrameRange parseFrames(const std::string& text);
 /// A whole number that is at least `least`.
 int64_t parseWhole(const std::string& text, const std::string& option, const char* expected, int64_t least);
+/// X,Y,W,H in pixels, with a width and a height.
+std::array<int, 4> parseCrop(const std::string& text, const std::string& option);
+/// The parts between commas; none of an empty text.
+std::vector<std::string> splitList(const std::string& text);
 /// Options that are parameters become values, in the order in which they take effect: those with a name of their own
 /// first, then --set as typed.
 void addValues(const SharedText& text, SceneOptions& scene);

@@ -17,8 +17,9 @@ struct ViewOptions {
 };
 
 /// Draws the window's content without a display, driven by a script. Returns the exit code.
-/// Throws Error(NoDisplay) when neither EGL nor OSMesa gives an OpenGL 3.3 context, Error(BadInput) with
-/// `script.txt:12` for a line it does not understand, Error(CheckFailed) when a `wait` of the script runs out of time.
+/// Throws what StartCheck throws; Error(NoDisplay) when neither EGL nor OSMesa gives an OpenGL 3.3 context,
+/// Error(BadInput) with `script.txt:12` for a line it does not understand, Error(CheckFailed) when a `wait` of the
+/// script runs out of time.
 int runView(const ViewOptions& options);
 
 }  // namespace lumi

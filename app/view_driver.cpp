@@ -50,6 +50,7 @@ ViewDriver::ViewDriver(const ViewOptions& options)
       context_(createHeadlessContext()),
       session_(log_),
       interface_(context_->gl(), session_, log_),
+      startCheck_(session_, log_, options.start),
       size_(options.size) {
     interface_.uiMap().setEnabled(true);
     interface_.state().captures = options.out;
@@ -57,6 +58,7 @@ ViewDriver::ViewDriver(const ViewOptions& options)
 }
 
 void ViewDriver::build(int frames) {
+    startCheck_.check();
     for (int i = 0; i < frames; ++i, ++frames_) {
         interface_.setScale(scale_);
         interface_.build(size_, kFrameSeconds);

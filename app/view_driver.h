@@ -43,6 +43,7 @@ private:
     MessageLog log_;
     Session session_;
     Interface interface_;
+    StartCheck startCheck_;
     std::unique_ptr<Framebuffer> framebuffer_;
     Extent2 size_;
     float scale_ = 1;

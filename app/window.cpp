@@ -90,7 +90,8 @@ public:
           session_(log_),
           interface_(gl_, session_, log_),
           pointers_(window_.get()),
-          writer_(log_) {
+          writer_(log_),
+          startCheck_(session_, log_, options.start) {
         connectInput(window_.get(), interface_.input());
         interface_.uiMap().setEnabled(!options.uiMap.empty());
         AppState& state = interface_.state();
@@ -104,6 +105,7 @@ public:
         while (!glfwWindowShouldClose(window_.get()) && !interface_.state().quit) {
             // Between frames the thread sleeps: the processor belongs to the path tracer.
             glfwWaitEventsTimeout(interface_.busy() ? 1.0 / 120 : 1.0 / 60);
+            startCheck_.check();
             if (!interface_.wantsFrame() && sinceFrame.elapsedMs() < kIdleMs) continue;
             const auto elapsed = static_cast<float>(sinceFrame.elapsedMs() * 1e-3);
             sinceFrame.restart();
@@ -163,6 +165,7 @@ private:
     Interface interface_;
     PointerShapes pointers_;
     PictureWriter writer_;
+    StartCheck startCheck_;
     std::string title_, uiMap_;
 };
 

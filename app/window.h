@@ -1,12 +1,17 @@
 #pragma once
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "math/vector.h"
 
 namespace lumi {
+
+/// One document value as typed.
+struct TypedValue {
+    std::string id, text;
+    std::string option;  ///< where it was given, for messages: "--set", "--size"
+};
 
 /// What the window and its offscreen twin show when they open.
 struct StartOptions {
@@ -14,8 +19,8 @@ struct StartOptions {
     int sceneIndex = -1;          ///< glTF: which scene; -1 is the file's default
     std::string variant;          ///< material variant by name; empty is the default
     std::vector<std::string> modules;  ///< instance of each pane; two open the panes side by side
-    /// Parameters in the order given, as text: `--set`, and the options that are parameters (`render.width`, ...).
-    std::vector<std::pair<std::string, std::string>> set;
+    /// Parameters in the order given: `--set`, and the options that are parameters (`render.width`, ...).
+    std::vector<TypedValue> set;
 };
 
 struct WindowOptions {
@@ -26,7 +31,7 @@ struct WindowOptions {
 };
 
 /// Opens the window and returns when the user closes it; the value is the program's exit code.
-/// Throws Error(NoDisplay) when there is no window system or no OpenGL 3.3.
+/// Throws Error(NoDisplay) when there is no window system or no OpenGL 3.3, and what StartCheck throws.
 int runWindow(const WindowOptions& options);
 
 }  // namespace lumi

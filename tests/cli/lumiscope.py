@@ -86,6 +86,18 @@ def png_text(data, keyword):
     return None
 
 
+def write_png(path, width, height, colour):
+    """An 8-bit RGB file; colour(x, y) gives the three values."""
+    rows = b"".join(b"\0" + bytes(value for x in range(width) for value in colour(x, y)) for y in range(height))
+
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) +
+                     chunk(b"IEND", b""))
+
+
 def exr_header(data):
     """Attributes of a single-part OpenEXR file, by name; channels as {name: type}."""
     position = 8

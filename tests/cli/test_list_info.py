@@ -31,6 +31,16 @@ class List(CommandTest):
         self.assertEqual([b["id"] for b in taps], ["accumulate-sampleCount", "accumulate-standardError"])
         self.assertTrue(all(b["module"] == "accumulate" for b in taps))
 
+    def test_metrics(self):
+        metrics = self.good("list", "metrics", "--json").json
+        self.assertEqual([m["id"] for m in metrics], ["rmse", "relmse", "mse", "mae", "psnr", "smape", "ssim", "ms_ssim",
+                                                      "flip", "hdr_flip", "cpbd"])
+        table = self.good("list", "metrics").out
+        for metric in metrics:
+            self.assertTrue(metric["title"] and metric["definition"], metric["id"])
+            self.assertIn(metric["definition"], table)
+        self.assertEqual({m["id"] for m in metrics if m["higher_is_better"]}, {"psnr", "ssim", "ms_ssim", "cpbd"})
+
     def test_parameters(self):
         parameters = {p["id"]: p for p in self.good("list", "parameters", "--json").json}
         for name in ("render.width", "render.spp", "path.max-depth", "sampler.kind", "camera.eye", "camera.jitter", "time",
@@ -78,6 +88,22 @@ class Info(CommandTest):
             info = self.good("info", scene["id"], "--json").json
             self.assertEqual(info["warnings"], [], scene["id"])
             self.assertGreater(info["triangles"], 0)
+
+    def test_the_signals_hold_what_they_promise(self):
+        for scene in ("cornell", "parade", "still-life"):
+            info = self.good("info", scene, "--check", "--json", "--set", "render.width=160", "--set",
+                             "render.height=90").json
+            checks = info["checks"]
+            self.assertEqual({check["frame"] for check in checks}, {0, 1})
+            self.assertEqual(len({check["rule"] for check in checks if check["frame"] == 0}), 12)
+            for check in checks:
+                self.assertTrue(check["holds"] and check["violations"] == 0, (scene, check))
+            for rule in ("normals", "motion", "radiance", "depth"):
+                self.assertTrue(any(rule in check["rule"] and check["checked"] > 1000 for check in checks), rule)
+        self.assertNotIn("checks", self.good("info", "cornell", "--json").json)
+        text = self.good("info", "cornell", "--check").out
+        self.assertEqual(text.count("  good "), 24)
+        self.assertNotIn("BROKEN", text)
 
     def test_warnings_are_told(self):
         (self.folder / "dark.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")

@@ -5,9 +5,9 @@ from lumiscope import CommandTest, SOURCE, TINY, main
 class Usage(CommandTest):
     def test_help_says_what_there_is(self):
         text = self.good("--help").out
-        for part in ("render", "info", "list", "view", "cornell", "Exit codes", "lumiscope render"):
+        for part in ("render", "compare", "info", "list", "view", "cornell", "list metrics", "Exit codes", "lumiscope render"):
             self.assertIn(part, text)
-        for command in ("render", "info", "list", "view"):
+        for command in ("render", "compare", "info", "list", "view"):
             text = self.good(command, "--help").out
             self.assertIn("lumiscope " + command, text)
             self.assertIn("Example", text)
@@ -21,12 +21,12 @@ class Usage(CommandTest):
         self.refused(2, ['"path.max-dept"', '"path.max-depth"', "--set"], "render", "cornell", "--set", "path.max-dept=2")
         self.refused(2, ['"albdo"', '"albedo"', "--buffers"], "render", "cornell", "--buffers", "albdo")
         self.refused(2, ["main", "inside", "--camera"], "render", "cornell", "--camera", "nowhere")
-        self.refused(2, ["scenes", "parameters"], "list", "things")
+        self.refused(2, ["scenes", "parameters", "metrics"], "list", "things")
         self.refused(2, ["v3", "--isa"], "render", "cornell", "--isa", "v9")
         self.assertEqual(self.files(), [])
 
     def test_commands_to_come_are_not_offered(self):
-        for command in ("reference", "compare", "study", "bench", "merge"):
+        for command in ("reference", "study", "bench", "merge"):
             self.assertNotIn("  " + command, self.good("--help").out)
             self.assertEqual(self.run_program(command, "x").code, 2)
 
@@ -36,13 +36,28 @@ class Usage(CommandTest):
                           ["--set", "path.max-depth"], ["--set", "=3"], ["--set", "path.max-depth=99"],
                           ["--threads", "0"], ["--memory-limit", "lots"], ["--out", "a.jpg"], ["--out", "noextension"],
                           ["--out", "a%s.png"], ["--out", "a%04d.mp4"], ["--progress", "sometimes"],
-                          ["--module", "none", "--module", "accumulate"]):
+                          ["--module", "none", "--module", "accumulate"], ["--warm-up", "1"],
+                          ["--frames", "3..5", "--warm-up", "4"], ["--set", "time=2", "--frames", "2"],
+                          ["--set", "scene.index=abc"]):
             self.refused(2, [], "render", "cornell", *arguments)
         self.refused(2, ["SCENE"], "render")
         self.refused(2, ["--replay"], "render", "--replay", "a.png", "--spp", "3")
         self.refused(2, ["--offscreen"], "view", "cornell", "--out", "x")
         self.refused(2, ["--out"], "view", "cornell", "--offscreen")
         self.assertEqual(self.files(), [])
+
+    def test_the_window_refuses_what_render_refuses(self):
+        out = ["--offscreen", "--out", "x", *TINY]
+        three = ["--module", "none", "--module", "accumulate", "--module", "none"]
+        for arguments in (["--module", "bogus"], ["--set", "scene.index=abc"], three, ["--module", "none", *three]):
+            self.refused(2, [], "cornell", *arguments)
+            self.refused(2, [], "view", "cornell", *out, *arguments)
+        if self.run_program("view", "cornell", *out, "--samples", 1).code == 4:
+            self.skipTest("no OpenGL")
+        for part, arguments in (("bogus.id", ["--set", "bogus.id=1"]), ("path.max-depth", ["--set", "path.max-depth=999"]),
+                                ("--camera", ["--camera", "nowhere"]),
+                                ("albdo", ["--set", "path.max-depth=3", "--set", "view.1.buffer=albdo"])):
+            self.refused(2, [part], "view", "cornell", *out, *arguments)
 
     def test_without_a_display_the_window_says_so(self):
         for arguments in ([], ["cornell"]):

@@ -1,0 +1,66 @@
+#include "app/help_text.h"
+
+#include <fmt/format.h>
+
+#include "measure/measure.h"
+#include "reconstruct/catalog.h"
+#include "scene/load.h"
+
+namespace lumi {
+namespace {
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 good; 1 a check did not hold; 2 usage, unknown scene, module, metric or id; 3 bad input, images of\n"
+    "different size, replayed scene changed; 4 no display or OpenGL; 5 memory limit, disk full; 130 interrupted.";
+
+std::string sceneList() {
+    std::string text = "Scenes: a path (.json .gltf .glb .obj, or an .hdr/.exr sky), or one of:\n";
+    for (const SceneEntry& entry : listScenes()) text += fmt::format("  {:<14}{}\n", entry.name, entry.title);
+    return text;
+}
+
+std::string moduleList() {
+    std::string text = "Modules:\n";
+    for (const ModuleEntry& entry : moduleCatalog()) text += fmt::format("  {:<14}{}\n", entry.id, entry.title);
+    return text + "  An instance is a module with parameters of its own: svgf, svgf@b.\n";
+}
+
+std::string metricList() {
+    std::string text = "Metrics:\n";
+    for (const Metric& metric : metricCatalog()) text += fmt::format("  {:<14}{}\n", metric.id, metric.title);
+    return text;
+}
+
+}  // namespace
+
+const char* versionText() { return "lumiscope 0.1.0"; }
+
+std::string mainFooter() {
+    return "Examples:\n"
+           "  lumiscope                                    the window, on the built-in atrium\n"
+           "  lumiscope room                               the window, on another scene\n"
+           "  lumiscope render cornell --spp 64 --out cornell.exr --out cornell.png\n"
+           "  lumiscope compare cornell.exr reference.exr  how far one image is from another\n"
+           "  lumiscope list parameters                    everything that --set knows\n"
+           "  lumiscope list metrics                       everything that compare measures\n\n" +
+           sceneList() + "\n" + kExitCodes;
+}
+
+std::string renderFooter() {
+    return "Examples:\n"
+           "  lumiscope render cornell --spp 256 --out cornell.png\n"
+           "  lumiscope render parade --frames 0..120 --fps 30 --out parade.mp4\n"
+           "  lumiscope render atrium --module none --frames 8 --buffers all --out atrium.%04d.exr\n"
+           "  lumiscope render room --set path.max-depth=3 --set camera.aperture=0.02 --size 640x360\n"
+           "  lumiscope render --replay cornell.png --out again.png\n\n" +
+           sceneList() + moduleList() + "\n" + kExitCodes;
+}
+
+std::string compareFooter() {
+    return "Examples:\n"
+           "  lumiscope compare noisy.exr reference.exr\n"
+           "  lumiscope compare noisy.exr reference.exr --metrics rmse,flip --maps errors --crop 0,0,256,256\n\n" +
+           metricList() + "\n" + kExitCodes;
+}
+
+}  // namespace lumi

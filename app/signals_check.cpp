@@ -1,0 +1,80 @@
+#include "app/signals_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace lumi {
+namespace {
+
+constexpr int kLargestSide = 320;
+constexpr float kOrbitDeg = 0.5f;
+constexpr int kSamples = 2;
+
+/// The document's image, made small.
+Extent2 smallExtent(const RenderSettings& render) {
+    const double scale = std::min(1.0, static_cast<double>(kLargestSide) / std::max(render.width, render.height));
+    const auto side = [&](int full) { return std::max(1, static_cast<int>(std::lround(full * scale))); };
+    return {side(render.width), side(render.height)};
+}
+
+/// The camera on a circle around its target, about its up direction.
+Camera orbited(Camera camera, float degrees) {
+    const float angle = glm::radians(degrees);
+    const Vec3 axis = glm::normalize(camera.up), arm = camera.eye - camera.target;
+    camera.eye = camera.target + arm * std::cos(angle) + glm::cross(axis, arm) * std::sin(angle) +
+                 axis * (glm::dot(axis, arm) * (1 - std::cos(angle)));
+    return camera;
+}
+
+FrameCheck checkFrame(Tracer& tracer, const FrameSampling& sampling, std::stop_token stop) {
+    Signals signals;
+    if (!tracer.sample(sampling, signals, stop)) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
+    FrameCheck check;
+    check.frame = static_cast<int>(sampling.frame);
+    check.findings = checkSignals(signals, sampling, tracer);
+    return check;
+}
+
+}  // namespace
+
+bool FrameCheck::holds() const {
+    return std::all_of(findings.begin(), findings.end(), [](const ContractFinding& finding) { return finding.holds(); });
+}
+
+std::vector<FrameCheck> checkFrames(Document document, std::stop_token stop) {
+    const Extent2 extent = smallExtent(document.render());
+    const std::string size = fmt::format("{}x{}, {} samples a pixel", extent.width, extent.height, kSamples);
+    const float before = document.time();
+    FrameSampling sampling;
+    sampling.extent = extent;
+    sampling.camera = sampling.previousCamera = poseCamera(document.camera(), extent);
+    sampling.samplesPerPixel = kSamples;
+    sampling.seed = static_cast<uint32_t>(document.render().seed);
+    sampling.jitter = Jitter::PerPixel;
+    sampling.path = document.path();
+    sampling.wanted = contractSignals();
+
+    Tracer tracer;
+    const auto first = poseScene(document.scene(), {before, before, before});
+    tracer.bind(first);
+    std::vector<FrameCheck> checks{checkFrame(tracer, sampling, stop)};
+    checks.back().what = size + ", jitter per pixel";
+
+    const bool animated = document.scene()->isAnimated();
+    if (animated) document.setTime(before + 1 / document.render().fps);
+    sampling.frame = 1;
+    sampling.firstSample = kSamples;
+    sampling.previousCamera = sampling.camera;
+    sampling.camera = poseCamera(orbited(document.camera(), kOrbitDeg), extent);
+    sampling.jitter = Jitter::PerFrame;
+    tracer.bind(poseScene(document.scene(), {document.time(), document.time(), before}, first.get()));
+    checks.push_back(checkFrame(tracer, sampling, stop));
+    checks.back().what = size + ", jitter per frame, camera moved" + (animated ? ", one frame later" : "");
+    return checks;
+}
+
+}  // namespace lumi
