@@ -6,7 +6,9 @@ namespace lumi {
 
 AliasTable::AliasTable(std::span<const float> weights) {
     double total = 0;
-    const auto weight = [&](size_t i) { return weights[i] > 0 && std::isfinite(weights[i]) ? double(weights[i]) : 0.0; };
+    const auto weight = [&](size_t i) {
+        return weights[i] > 0 && std::isfinite(weights[i]) ? double(weights[i]) : 0.0;
+    };
     for (size_t i = 0; i < weights.size(); ++i) total += weight(i);
     if (!(total > 0)) return;
 

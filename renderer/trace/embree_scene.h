@@ -16,8 +16,8 @@ namespace lumi {
 /// Scenes are built robust (no leaks at shared edges) at medium quality. Rebuilding rather than refitting keeps a frame
 /// independent of the frames before it.
 ///
-/// Alpha: filter functions reject hits on masked texels, and on blended ones with probability 1 - alpha by a hash of the
-/// ray's id, the instance and the primitive.
+/// Alpha: filter functions reject hits on masked texels, and on blended ones with probability 1 - alpha by a hash of
+/// the ray's id, the instance and the primitive.
 class EmbreeScene {
 public:
     EmbreeScene();

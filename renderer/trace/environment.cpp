@@ -41,7 +41,8 @@ double makeCdf(const float* values, int count, float* cdf) {
     cdf[0] = 0;
     for (int i = 0; i < count; ++i) {
         running += values[i];
-        cdf[i + 1] = sum > 0 ? static_cast<float>(running / sum) : static_cast<float>(i + 1) / static_cast<float>(count);
+        cdf[i + 1] =
+            sum > 0 ? static_cast<float>(running / sum) : static_cast<float>(i + 1) / static_cast<float>(count);
     }
     cdf[count] = 1;
     return sum;
@@ -116,8 +117,9 @@ EnvironmentLight::Grid EnvironmentLight::finestGrid() const {
     const size_t cells = static_cast<size_t>(grid.columns) * static_cast<size_t>(grid.rows);
     grid.weight.resize(cells), grid.square.resize(cells);
     const auto light = [&](int x, int y) {
-        const float value = luminance(texels_[static_cast<size_t>(std::clamp(y, 0, height_ - 1)) * static_cast<size_t>(width_) +
-                                              static_cast<size_t>((x + width_) % width_)]);
+        const float value =
+            luminance(texels_[static_cast<size_t>(std::clamp(y, 0, height_ - 1)) * static_cast<size_t>(width_) +
+                              static_cast<size_t>((x + width_) % width_)]);
         return value > 0 && std::isfinite(value) ? double(value) : 0.0;
     };
     std::vector<double> rowLight(static_cast<size_t>(grid.rows)), rowSine(static_cast<size_t>(grid.rows));
@@ -207,8 +209,8 @@ Vec3 EnvironmentLight::sample(Vec2 u, float& pdf, Vec3& radiance) const {
     }
     const int row = findInterval(rowCdf_.data(), rowGuide_.data(), rows_, u.y);
     const float* columnCdf = &columnCdf_[static_cast<size_t>(row) * static_cast<size_t>(columns_ + 1)];
-    const int column = findInterval(
-        columnCdf, &columnGuide_[static_cast<size_t>(row) * static_cast<size_t>(columns_)], columns_, u.x);
+    const int column =
+        findInterval(columnCdf, &columnGuide_[static_cast<size_t>(row) * static_cast<size_t>(columns_)], columns_, u.x);
     const auto within = [](const float* cdf, int i, float value) {
         const float size = cdf[i + 1] - cdf[i];
         return size > 0 ? std::clamp((value - cdf[i]) / size, 0.0f, 0x1.fffffep-1f) : 0.5f;

@@ -33,7 +33,9 @@ private:
     Grid finestGrid() const;
     void buildTables();
     Vec3 imageRadiance(Vec2 uv) const;
-    Vec3 toImage(const Vec3& world) const { return {cos_ * world.x - sin_ * world.z, world.y, sin_ * world.x + cos_ * world.z}; }
+    Vec3 toImage(const Vec3& world) const {
+        return {cos_ * world.x - sin_ * world.z, world.y, sin_ * world.x + cos_ * world.z};
+    }
     Vec3 toWorld(const Vec3& d) const { return {cos_ * d.x + sin_ * d.z, d.y, -sin_ * d.x + cos_ * d.z}; }
     float density(int column, int row) const;  ///< per unit square of the image
 
@@ -44,9 +46,9 @@ private:
     float imageMeanLuminance_ = 0, meanLuminance_ = 0;
     int columns_ = 0, rows_ = 0;
     int width_ = 0, height_ = 0;
-    std::vector<Vec3> texels_;      ///< the image, interleaved
-    std::vector<float> rowCdf_;     ///< rows_ + 1, ends at 1
-    std::vector<float> columnCdf_;  ///< rows_ times columns_ + 1, each row ends at 1
+    std::vector<Vec3> texels_;                      ///< the image, interleaved
+    std::vector<float> rowCdf_;                     ///< rows_ + 1, ends at 1
+    std::vector<float> columnCdf_;                  ///< rows_ times columns_ + 1, each row ends at 1
     std::vector<uint16_t> rowGuide_, columnGuide_;  ///< where to start looking in the tables [Chen & Asau 1974]
 };
 

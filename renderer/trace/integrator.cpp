@@ -40,8 +40,7 @@ Vec3 absorptionTowards(const PathState& path, const Surface& surface, bool farSi
 Integrator::Integrator(const TraceScene& scene, const PathSettings& settings, uint32_t seed,
                        std::span<PathObserver* const> observers)
     : scene_(scene), settings_(settings), seed_(seed), observers_(observers), needs_(joined(observers)) {
-    usesLightSamples_ = !scene.lights.empty() &&
-                        (settings.strategy != DirectStrategy::Bsdf || scene.lights.hasDelta());
+    usesLightSamples_ = !scene.lights.empty() && (settings.strategy != DirectStrategy::Bsdf || scene.lights.hasDelta());
 }
 
 float Integrator::misWeight(float pdf, float otherPdf) const {
@@ -56,8 +55,10 @@ Vec3 Integrator::limited(const PathState& path, const Vec3& radiance, int depth)
 }
 
 void Integrator::add(PathBatch& batch, PathState& path, const Vec3& contribution) const {
-    if (isFinite(contribution)) path.radiance += contribution;
-    else ++batch.nonFinite;
+    if (isFinite(contribution))
+        path.radiance += contribution;
+    else
+        ++batch.nonFinite;
 }
 
 bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::span<const SurfacePoint> firstPoints,
@@ -82,8 +83,10 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
     for (int depth = 0; !batch.active.empty(); ++depth) {
         if (stop.stop_requested()) return false;
         const bool given = depth == 0 && !firstPoints.empty();
-        if (!given) findHits(batch, depth, coherent, counts);
-        else batch.hits.assign(count, RawHit());
+        if (!given)
+            findHits(batch, depth, coherent, counts);
+        else
+            batch.hits.assign(count, RawHit());
         const bool wantsVertices = depth < needs_.vertexDepths;
         if (wantsVertices) batch.vertices.assign(batch.active.size(), PathVertex()), batch.vertexOf.resize(count);
         if (!given) prefetchSurfaces(scene_.tables, batch.hits);
@@ -160,8 +163,7 @@ void Integrator::shade(PathBatch& batch, uint32_t row, int depth, std::span<cons
     // The last surface only shines.
     const bool last = depth >= settings_.maxDepth;
     const InstanceRecord& instance = scene_.tables.instances[point.instance];
-    if (last && !vertex && instance.body < 0 &&
-        !scene_.tables.materials[instance.materialOf(point.primitive)].emits)
+    if (last && !vertex && instance.body < 0 && !scene_.tables.materials[instance.materialOf(point.primitive)].emits)
         return;
 
     Surface surface = evaluateSurface(scene_.tables, point, wo, path.cone.width);
@@ -321,7 +323,8 @@ bool Integrator::continuePath(PathState& path, const Surface& surface, const Fra
         if (depth < needs_.shareDepths && !sample.delta) {
             const BsdfValue f = bsdf.evaluate(sample.wi);
             const Vec3 sum = f.diffuse + f.specular;
-            for (int c = 0; c < 3; ++c) vertex->diffuseShare[c] = sum[c] > 0 ? f.diffuse[c] / sum[c] : (diffuse ? 1.0f : 0.0f);
+            for (int c = 0; c < 3; ++c)
+                vertex->diffuseShare[c] = sum[c] > 0 ? f.diffuse[c] / sum[c] : (diffuse ? 1.0f : 0.0f);
         }
     }
     path.throughput *= weight;
@@ -329,10 +332,11 @@ bool Integrator::continuePath(PathState& path, const Surface& surface, const Fra
     path.scatterPdf = sample.delta ? 0 : sample.pdf;
     ++(diffuse ? path.diffuseCount : path.specularCount);
     path.diffuseBefore |= diffuse;
-    path.cone.spread = std::max(path.cone.spread, diffuse ? kDiffuseSpread : kSpecularSpread * sqr(surface.inputs.roughness));
+    path.cone.spread =
+        std::max(path.cone.spread, diffuse ? kDiffuseSpread : kSpecularSpread * sqr(surface.inputs.roughness));
     path.absorption = absorptionTowards(path, surface, sample.wi.z < 0);
-    path.ray.origin = offsetOrigin(surface.position, side > 0 ? surface.geometricNormal : -surface.geometricNormal,
-                                   surface.offset);
+    path.ray.origin =
+        offsetOrigin(surface.position, side > 0 ? surface.geometricNormal : -surface.geometricNormal, surface.offset);
     path.ray.direction = direction;
     path.ray.tmin = 0;
     path.ray.tmax = kInfinity;
@@ -353,9 +357,8 @@ void Integrator::traceShadows(PathBatch& batch, int depth, bool coherent, TraceC
             batch.blocked[i] = batch.blockers[i].valid();
             if (!batch.blocked[i]) continue;
             const BatchRay& ray = batch.shadowRays[i];
-            batch.vertices[batch.vertexOf[batch.pending[i].path]].blocker =
-                surfacePoint(scene_.tables, batch.blockers[i], ray.origin + ray.direction * batch.blockers[i].distance,
-                             ray.time);
+            batch.vertices[batch.vertexOf[batch.pending[i].path]].blocker = surfacePoint(
+                scene_.tables, batch.blockers[i], ray.origin + ray.direction * batch.blockers[i].distance, ray.time);
         }
     } else {
         occludedRays(scene_.embree, batch.shadowRays, batch.blocked, coherence);

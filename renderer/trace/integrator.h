@@ -6,8 +6,8 @@
 #include "trace/observer.h"
 #include "trace/path_state.h"
 #include "trace/sampler.h"
-#include "trace/surface.h"
 #include "trace/settings.h"
+#include "trace/surface.h"
 #include "trace/trace_scene.h"
 #include "trace/tracer.h"
 

@@ -18,7 +18,8 @@ float coneOfSphere(const LightShape& sphere, const Vec3& position) {
 }
 
 SphericalRectangle rectangleFrom(const LightShape& shape, const Vec3& position) {
-    return SphericalRectangle(position, shape.centre - shape.halfX - shape.halfY, 2.0f * shape.halfX, 2.0f * shape.halfY);
+    return SphericalRectangle(position, shape.centre - shape.halfX - shape.halfY, 2.0f * shape.halfX,
+                              2.0f * shape.halfY);
 }
 
 bool sampleSphereLight(const LightShape& sphere, const Vec3& position, Vec2 u, LightSample& out) {

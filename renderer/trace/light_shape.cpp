@@ -50,8 +50,7 @@ Vec3 LightShape::normalAt(Vec2 uv) const {
 
 Vec2 LightShape::nameOf(const Vec3& positionWorld) const {
     const Vec3 offset = positionWorld - centre;
-    if (type == LightType::Sphere)
-        return octahedronFromDirection(frameOf(*this).toLocal(unitOr(offset, normal)));
+    if (type == LightType::Sphere) return octahedronFromDirection(frameOf(*this).toLocal(unitOr(offset, normal)));
     // Coordinates in the skewed basis (halfX, halfY) by Cramer's rule.
     const float xx = glm::dot(halfX, halfX), yy = glm::dot(halfY, halfY), xy = glm::dot(halfX, halfY);
     const float determinant = xx * yy - xy * xy;
@@ -71,8 +70,8 @@ LightShape lightShape(const Light& light, const Mat4& worldFromLight) {
         shape.halfX = axisX * (0.5f * light.size.x);
         shape.halfY = axisY * (0.5f * light.size.y);
         shape.area = 4 * glm::length(glm::cross(shape.halfX, shape.halfY));
-        shape.rightAngled = std::abs(glm::dot(shape.halfX, shape.halfY)) <=
-                            1e-5f * glm::length(shape.halfX) * glm::length(shape.halfY);
+        shape.rightAngled =
+            std::abs(glm::dot(shape.halfX, shape.halfY)) <= 1e-5f * glm::length(shape.halfX) * glm::length(shape.halfY);
         return shape;
     }
     const float scaleXy = 0.5f * (glm::length(axisX) + glm::length(axisY));

@@ -22,7 +22,9 @@ float triangleLuminance(const MaterialRecord& material, const InstanceRecord& in
     const Vec2 size = glm::max(a, glm::max(b, c)) - glm::min(a, glm::min(b, c));
     const float extent = std::max(size.x, size.y);
     const Vec2 middle = (a + b + c) * (1.0f / 3.0f);
-    const auto filtered = [&](float width) { return luminance(material.emission * Vec3(texture.sample(middle, width))); };
+    const auto filtered = [&](float width) {
+        return luminance(material.emission * Vec3(texture.sample(middle, width)));
+    };
     return filtered(extent) + 0.05f * filtered(4 * extent) + 1e-4f * factor;
 }
 
@@ -162,10 +164,18 @@ bool Lights::sample(const Vec3& position, Vec2 pick, Vec2 u, LightSample& out) c
     out.hittable = true;
     bool reached = false;
     switch (entry.kind) {
-        case Kind::Triangle: reached = sampleTriangle(triangles_[entry.index], position, u, out); break;
-        case Kind::Body: reached = sampleBody(tables_->bodies[entry.index], position, u, out); break;
-        case Kind::Point: reached = samplePoint(points_[entry.index], position, out); break;
-        case Kind::Directional: reached = sampleSun(suns_[entry.index], u, out); break;
+        case Kind::Triangle:
+            reached = sampleTriangle(triangles_[entry.index], position, u, out);
+            break;
+        case Kind::Body:
+            reached = sampleBody(tables_->bodies[entry.index], position, u, out);
+            break;
+        case Kind::Point:
+            reached = samplePoint(points_[entry.index], position, out);
+            break;
+        case Kind::Directional:
+            reached = sampleSun(suns_[entry.index], u, out);
+            break;
         case Kind::Environment:
             out.direction = out.position = environment_.sample(u, out.pdf, out.radiance);
             out.distance = kInfinity;
@@ -204,8 +214,10 @@ bool Lights::samplePoint(const Point& point, const Vec3& position, LightSample& 
     if (!(distance2 > 0)) return false;
     out.distance = std::sqrt(distance2);
     out.direction = toLight / out.distance;
-    const float spot = std::clamp(-glm::dot(point.axis, out.direction) * point.spotScale + point.spotOffset, 0.0f, 1.0f);
-    const float window = std::isfinite(point.range) ? std::clamp(1 - sqr(sqr(out.distance / point.range)), 0.0f, 1.0f) : 1;
+    const float spot =
+        std::clamp(-glm::dot(point.axis, out.direction) * point.spotScale + point.spotOffset, 0.0f, 1.0f);
+    const float window =
+        std::isfinite(point.range) ? std::clamp(1 - sqr(sqr(out.distance / point.range)), 0.0f, 1.0f) : 1;
     out.radiance = point.intensity * (sqr(spot) * window / distance2);
     out.position = out.target = point.position;
     out.pdf = 1;

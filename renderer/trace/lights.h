@@ -10,11 +10,11 @@ namespace lumi {
 
 /// A point (or direction) of a light as chosen for a shading point.
 struct LightSample {
-    Vec3 direction{0};      ///< unit, from the shading point
-    float distance = 0;     ///< metres; +inf for infinite lights
-    Vec3 target{0};         ///< where a shadow ray ends: the light's point moved off its surface (finite lights)
-    Vec3 radiance{0};       ///< towards the shading point; for lights without extent radiance times solid angle
-    float pdf = 0;          ///< per solid angle, choice of the light included; for lights without extent of the choice alone
+    Vec3 direction{0};   ///< unit, from the shading point
+    float distance = 0;  ///< metres; +inf for infinite lights
+    Vec3 target{0};      ///< where a shadow ray ends: the light's point moved off its surface (finite lights)
+    Vec3 radiance{0};    ///< towards the shading point; for lights without extent radiance times solid angle
+    float pdf = 0;  ///< per solid angle, choice of the light included; for lights without extent of the choice alone
     bool delta = false;     ///< without extent: no other technique finds it
     bool hittable = false;  ///< continued paths find it too
     int light = -1;         ///< entry
@@ -47,9 +47,9 @@ public:
                       const Vec3& hitPosition, const Vec3& hitNormal) const;
     float pdfBody(int body, const Vec3& position, const Vec3& direction, const Vec3& hitPosition) const;
 
-    /// Radiance that a path finds that leaves the scene along `direction`: the sky, and directional lights with an angle
-    /// unless `cameraRay` (they are not seen directly); with the density of sample() for each summed MIS-weighted by
-    /// `weight(pdf)`.
+    /// Radiance that a path finds that leaves the scene along `direction`: the sky, and directional lights with an
+    /// angle unless `cameraRay` (they are not seen directly); with the density of sample() for each summed MIS-weighted
+    /// by `weight(pdf)`.
     template <class Weight>
     Vec3 escaped(const Vec3& direction, bool cameraRay, Weight&& weight) const;
 
@@ -92,8 +92,8 @@ private:
     std::vector<Triangle> triangles_;
     std::vector<Point> points_;
     std::vector<Sun> suns_;
-    std::vector<uint32_t> firstTriangle_;    ///< of each instance, into triangleEntry_; kNone: it does not emit
-    std::vector<uint32_t> triangleEntry_;    ///< entry of each triangle of emitting instances, kNone if it does not emit
+    std::vector<uint32_t> firstTriangle_;  ///< of each instance, into triangleEntry_; kNone: it does not emit
+    std::vector<uint32_t> triangleEntry_;  ///< entry of each triangle of emitting instances, kNone if it does not emit
     std::vector<uint32_t> bodyEntry_;
     AliasTable picks_;
     EnvironmentLight environment_;

@@ -33,8 +33,8 @@ struct Packet<16> {
 RTCIntersectContext makeContext() {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    // Never RTC_INTERSECT_CONTEXT_FLAG_COHERENT: Embree 3.13.5's frustum traversal of 16-wide occlusion packets does not
-    // return for some packets of shadow rays towards a sky over robust instances.
+    // Never RTC_INTERSECT_CONTEXT_FLAG_COHERENT: Embree 3.13.5's frustum traversal of 16-wide occlusion packets does
+    // not return for some packets of shadow rays towards a sky over robust instances.
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     return context;
 }
@@ -64,10 +64,13 @@ RTCRay singleRay(const BatchRay& r) {
     return ray;
 }
 
-uint32_t instanceOf(uint32_t geometry, uint32_t placed) { return placed != RTC_INVALID_GEOMETRY_ID ? placed : geometry; }
+uint32_t instanceOf(uint32_t geometry, uint32_t placed) {
+    return placed != RTC_INVALID_GEOMETRY_ID ? placed : geometry;
+}
 
 template <int N>
-void intersectPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<RawHit> hits, RTCIntersectContext& context) {
+void intersectPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<RawHit> hits,
+                      RTCIntersectContext& context) {
     alignas(64) typename Packet<N>::RayHit packet;
     alignas(64) int valid[N];
     for (size_t first = 0; first < rays.size(); first += N) {
@@ -86,7 +89,8 @@ void intersectPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<
 }
 
 template <int N>
-void occludedPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked, RTCIntersectContext& context) {
+void occludedPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked,
+                     RTCIntersectContext& context) {
     alignas(64) typename Packet<N>::Ray packet;
     alignas(64) int valid[N];
     for (size_t first = 0; first < rays.size(); first += N) {
@@ -100,7 +104,8 @@ void occludedPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<u
 
 }  // namespace
 
-void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits, Coherence coherence) {
+void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits,
+                   Coherence coherence) {
     assert(hits.size() >= rays.size());
     RTCIntersectContext context = makeContext();
     const int width = coherence == Coherence::Coherent ? scene.packetWidth() : 1;

@@ -28,7 +28,8 @@ struct RawHit {
 enum class Coherence { Coherent, Incoherent };
 
 /// Nearest hits of rays[0, n).
-void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits, Coherence coherence);
+void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits,
+                   Coherence coherence);
 
 /// blocked[i] = 1 if anything lies in (tmin, tmax) of ray i, else 0.
 void occludedRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked,

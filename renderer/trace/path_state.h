@@ -14,11 +14,11 @@ struct PathState {
     RayCone cone;
     Vec3 throughput{1};
     Vec3 radiance{0};
-    Vec3 scatterPosition{0};   ///< of the last scattering: where densities of light samples refer to
-    float scatterPdf = 0;      ///< per solid angle; 0 after a delta lobe
-    Vec3 absorption{0};        ///< 1/m, of the solid the path is in
+    Vec3 scatterPosition{0};  ///< of the last scattering: where densities of light samples refer to
+    float scatterPdf = 0;     ///< per solid angle; 0 after a delta lobe
+    Vec3 absorption{0};       ///< 1/m, of the solid the path is in
     SampleStream stream;
-    uint32_t hash = 0;         ///< names the path in stochastic transparency
+    uint32_t hash = 0;  ///< names the path in stochastic transparency
     uint32_t slot = 0, sample = 0;
     int diffuseCount = 0, specularCount = 0;
     bool alive = true;
@@ -36,10 +36,10 @@ struct PendingLight {
 struct PathBatch {
     static constexpr size_t kMost = 256;
 
-    std::vector<PathStart> starts;      ///< the caller's, if it has no other place for them
+    std::vector<PathStart> starts;  ///< the caller's, if it has no other place for them
     std::vector<PathState> paths;
-    std::vector<uint32_t> active;       ///< indices of paths that have a ray, in order of their starts
-    std::vector<BatchRay> rays;         ///< of the active paths
+    std::vector<uint32_t> active;  ///< indices of paths that have a ray, in order of their starts
+    std::vector<BatchRay> rays;    ///< of the active paths
     std::vector<RawHit> hits;
     std::vector<PendingLight> pending;
     std::vector<BatchRay> shadowRays;
@@ -48,7 +48,7 @@ struct PathBatch {
 
     // For observers: one row an active path.
     std::vector<PathVertex> vertices;
-    std::vector<uint32_t> vertexOf;     ///< row of each path
+    std::vector<uint32_t> vertexOf;  ///< row of each path
     std::vector<uint32_t> slots, samples;
     std::vector<Vec3> radiance;
     std::vector<RawHit> blockers;

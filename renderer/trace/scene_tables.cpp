@@ -64,8 +64,10 @@ InstanceRecord makeInstance(const PosedScene& posed, const EmbreeScene& embree, 
     r.restPositions = dataOrNull(mesh.positions);
     r.uv[0] = dataOrNull(mesh.uv[0]), r.uv[1] = dataOrNull(mesh.uv[1]);
     r.colours = dataOrNull(mesh.colours);
-    if (instance.material >= 0) r.material = static_cast<uint32_t>(instance.material);
-    else r.material = mesh.material, r.triangleMaterial = dataOrNull(mesh.triangleMaterial);
+    if (instance.material >= 0)
+        r.material = static_cast<uint32_t>(instance.material);
+    else
+        r.material = mesh.material, r.triangleMaterial = dataOrNull(mesh.triangleMaterial);
     if (const Vec3* world = embree.worldPositions(index)) {
         r.positions = world;
         r.inWorld = true;

@@ -10,41 +10,44 @@ namespace lumi {
 /// What shading reads of an instance, in one place; pointers are into the posed scene (or Embree's world vertices).
 struct InstanceRecord {
     const UVec3* triangles = nullptr;
-    const Vec3* positions = nullptr;  ///< object space, or world space if `inWorld`
-    const Vec3* normals = nullptr;    ///< object space, posed; null: flat
-    const Vec3* restNormals = nullptr;    ///< of the mesh, object space
+    const Vec3* positions = nullptr;    ///< object space, or world space if `inWorld`
+    const Vec3* normals = nullptr;      ///< object space, posed; null: flat
+    const Vec3* restNormals = nullptr;  ///< of the mesh, object space
     const Vec3* restPositions = nullptr;
-    const Vec4* tangents = nullptr;         ///< of the mesh: directions at rest, and handedness
-    const Vec3* deformedTangents = nullptr; ///< posed directions, if the pose has them
+    const Vec4* tangents = nullptr;          ///< of the mesh: directions at rest, and handedness
+    const Vec3* deformedTangents = nullptr;  ///< posed directions, if the pose has them
     const Vec2* uv[2] = {nullptr, nullptr};
     const Vec4* colours = nullptr;
     const uint32_t* triangleMaterial = nullptr;  ///< null: `material` for all
     uint32_t material = 0;
     uint32_t triangleCount = 0;
-    int body = -1;         ///< index into SceneTables::shapes if this is the body of a light
+    int body = -1;  ///< index into SceneTables::shapes if this is the body of a light
     bool inWorld = false;
     bool mirrored = false;
-    float objectScale = 0; ///< largest |coordinate| that the transform's products reach: bounds rounding errors
+    float objectScale = 0;  ///< largest |coordinate| that the transform's products reach: bounds rounding errors
     Mat4 worldFromObject{1};
     Mat3 normalFromObject{1};
 
-    uint32_t materialOf(uint32_t primitive) const {
-        return triangleMaterial ? triangleMaterial[primitive] : material;
-    }
+    uint32_t materialOf(uint32_t primitive) const { return triangleMaterial ? triangleMaterial[primitive] : material; }
 };
 
 /// A material without what only its textures need.
 struct MaterialRecord {
     enum : uint32_t {
-        kBaseColor = 1, kMetallicRoughness = 2, kNormal = 4, kEmission = 8, kSpecular = 16, kSpecularColor = 32,
+        kBaseColor = 1,
+        kMetallicRoughness = 2,
+        kNormal = 4,
+        kEmission = 8,
+        kSpecular = 16,
+        kSpecularColor = 32,
         kTransmission = 64
     };
     uint32_t textures = 0;  ///< which of the above are present
     bool solid = false, doubleSided = true, emits = false;
-    bool layered = false;   ///< the source's clearcoat, sheen, anisotropy or iridescence take part
+    bool layered = false;  ///< the source's clearcoat, sheen, anisotropy or iridescence take part
     float metallic = 0, roughness = 0.5f, ior = 1.5f, specular = 1, transmission = 0;
     Vec3 baseColor{1}, specularColor{1}, emission{0};
-    Vec3 absorption{0};     ///< 1/m inside a solid (Beer-Lambert)
+    Vec3 absorption{0};  ///< 1/m inside a solid (Beer-Lambert)
     const Material* source = nullptr;
 };
 

@@ -4,57 +4,86 @@ namespace lumi {
 
 void PathSettings::describe(ParameterVisitor& v) {
     v.integer("path.max-depth", maxDepth,
-              {.label = "Path depth", .min = 1, .max = 64,
-               .help = "Surfaces a path may scatter at; 1 is direct light only.", .redo = Redo::Samples});
+              {.label = "Path depth",
+               .min = 1,
+               .max = 64,
+               .help = "Surfaces a path may scatter at; 1 is direct light only.",
+               .redo = Redo::Samples});
     v.integer("path.max-diffuse-depth", maxDiffuseDepth,
-              {.label = "Diffuse depth", .min = 0, .max = 64,
-               .help = "Of these, how many scatterings may be diffuse.", .redo = Redo::Samples});
+              {.label = "Diffuse depth",
+               .min = 0,
+               .max = 64,
+               .help = "Of these, how many scatterings may be diffuse.",
+               .redo = Redo::Samples});
     v.integer("path.max-specular-depth", maxSpecularDepth,
-              {.label = "Specular depth", .min = 0, .max = 64,
-               .help = "Of these, how many may be specular reflections and transmissions.", .redo = Redo::Samples});
+              {.label = "Specular depth",
+               .min = 0,
+               .max = 64,
+               .help = "Of these, how many may be specular reflections and transmissions.",
+               .redo = Redo::Samples});
     v.choice("path.strategy", strategy,
-             {.label = "Direct light", .options = {"mis", "light", "bsdf"},
+             {.label = "Direct light",
+              .options = {"mis", "light", "bsdf"},
               .help = "How light is found: multiple importance sampling (power heuristic), light samples alone, or "
                       "continued paths alone (with light samples for lights without extent).",
               .redo = Redo::Samples});
     v.toggle("path.roulette", roulette,
-             {.label = "Russian roulette", .help = "Ends dim paths at random and weights the others up.",
+             {.label = "Russian roulette",
+              .help = "Ends dim paths at random and weights the others up.",
               .redo = Redo::Samples});
     v.when(roulette, [&] {
         v.integer("path.roulette-depth", rouletteDepth,
-                  {.label = "Roulette depth", .min = 0, .max = 64,
-                  .help = "Scatterings before roulette may end a path.", .redo = Redo::Samples});
+                  {.label = "Roulette depth",
+                   .min = 0,
+                   .max = 64,
+                   .help = "Scatterings before roulette may end a path.",
+                   .redo = Redo::Samples});
     });
     v.toggle("path.clamp", clamp,
-             {.label = "Clamp", .help = "Limits each contribution after the first surface: less noise, lost energy.",
+             {.label = "Clamp",
+              .help = "Limits each contribution after the first surface: less noise, lost energy.",
               .redo = Redo::Samples});
     v.when(clamp, [&] {
         v.number("path.clamp-radiance", clampRadiance,
-                  {.label = "Clamp at", .min = 0.01, .max = 1000, .scale = Scale::Log, .unit = "W/(m^2 sr)",
-                  .help = "Largest channel a contribution may have.", .redo = Redo::Samples});
+                 {.label = "Clamp at",
+                  .min = 0.01,
+                  .max = 1000,
+                  .scale = Scale::Log,
+                  .unit = "W/(m^2 sr)",
+                  .help = "Largest channel a contribution may have.",
+                  .redo = Redo::Samples});
     });
-    v.toggle("path.multiple-scattering", multipleScattering,
-             {.label = "Multiple scattering",
-              .help = "Gives rough reflections what facets scatter more than once [Kulla & Conty 2017]; without it rough "
-                      "metals darken.",
-              .redo = Redo::Samples});
+    v.toggle(
+        "path.multiple-scattering", multipleScattering,
+        {.label = "Multiple scattering",
+         .help = "Gives rough reflections what facets scatter more than once [Kulla & Conty 2017]; without it rough "
+                 "metals darken.",
+         .redo = Redo::Samples});
     v.toggle("path.regularize", regularize,
-             {.label = "Regularize", .help = "Widens specular lobes after a diffuse scattering [Kaplanyan 2013].",
+             {.label = "Regularize",
+              .help = "Widens specular lobes after a diffuse scattering [Kaplanyan 2013].",
               .redo = Redo::Samples});
     v.when(regularize, [&] {
         v.number("path.regularize-roughness", regularizeRoughness,
-                  {.label = "Least roughness", .min = 0.02, .max = 1,
+                 {.label = "Least roughness",
+                  .min = 0.02,
+                  .max = 1,
                   .help = "Roughness that lobes have at least after a diffuse scattering.",
                   .redo = Redo::Samples});
     });
     v.choice("sampler.kind", sampler,
-             {.label = "Sampler", .options = {"sobol", "halton", "independent"},
+             {.label = "Sampler",
+              .options = {"sobol", "halton", "independent"},
               .help = "Owen-scrambled Sobol pairs, Halton that loops, or independent numbers.",
               .redo = Redo::Samples});
     v.when(sampler == SamplerKind::Halton, [&] {
         v.integer("sampler.halton-loop", haltonLoop,
-                  {.label = "Halton loop", .min = 1, .max = 4096, .scale = Scale::Log,
-                  .help = "Samples after which the Halton sequence repeats.", .redo = Redo::Samples});
+                  {.label = "Halton loop",
+                   .min = 1,
+                   .max = 4096,
+                   .scale = Scale::Log,
+                   .help = "Samples after which the Halton sequence repeats.",
+                   .redo = Redo::Samples});
     });
 }
 

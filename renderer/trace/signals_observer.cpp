@@ -18,9 +18,9 @@ const SignalSet kDemodulated{Signal::DirectDiffuse, Signal::IndirectDiffuse, Sig
                              Signal::IndirectSpecular};
 const SignalSet kSplit = kDemodulated | SignalSet{Signal::Emission, Signal::Direct, Signal::Indirect};
 const SignalSet kFirstVertex{Signal::Visibility, Signal::Albedo, Signal::SpecularAlbedo};
-const SignalSet kGeometry{Signal::Normal, Signal::GeometricNormal, Signal::ObjectNormal, Signal::Depth,
-                          Signal::InverseDepth, Signal::DepthGradient, Signal::Position, Signal::Motion,
-                          Signal::Roughness, Signal::ObjectId, Signal::MaterialId, Signal::Surface};
+const SignalSet kGeometry{Signal::Normal,       Signal::GeometricNormal, Signal::ObjectNormal, Signal::Depth,
+                          Signal::InverseDepth, Signal::DepthGradient,   Signal::Position,     Signal::Motion,
+                          Signal::Roughness,    Signal::ObjectId,        Signal::MaterialId,   Signal::Surface};
 
 }  // namespace
 
@@ -81,8 +81,10 @@ void SignalsObserver::bounce(const BounceBatch& batch) {
         const Vec3 diffuse = v.throughput * v.directDiffuse, specular = v.throughput * v.directSpecular;
         if (batch.depth == 0) {
             if (geometry_ && batch.samples[i] == static_cast<uint32_t>(sampling_.firstSample)) {
-                if (v.point.valid()) writeGeometry(batch.slots[i], v);
-                else writeSky(batch.slots[i], v);
+                if (v.point.valid())
+                    writeGeometry(batch.slots[i], v);
+                else
+                    writeSky(batch.slots[i], v);
             }
             const bool sky = !v.point.valid();
             sums.albedo += sky ? Vec3(1) : v.albedo;

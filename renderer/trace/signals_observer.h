@@ -16,7 +16,8 @@ namespace lumi {
 ///
 /// The lighting split: emission found at the first vertex is emission; light sampled at the first vertex is direct
 /// light of the lobe that scattered it; emission that the continued path finds at once is direct light too, and all
-/// light from further on is indirect, both shared between the lobes as they share the path's weight at the first vertex.
+/// light from further on is indirect, both shared between the lobes as they share the path's weight at the first
+/// vertex.
 class SignalsObserver : public PathObserver {
 public:
     static constexpr int kTile = 16;
@@ -44,7 +45,7 @@ private:
     };
     struct TileSums {
         std::vector<PixelSums> pixels;
-        std::vector<BlockSum<Colour, 48>> radiance;   ///< at more than one sample a pixel
+        std::vector<BlockSum<Colour, 48>> radiance;  ///< at more than one sample a pixel
         std::vector<std::array<RunningMoments, 3>> moments;
     };
 

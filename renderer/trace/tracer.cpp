@@ -40,6 +40,12 @@ std::vector<int> mortonOrder(int columns, int rows) {
     return order;
 }
 
+std::shared_ptr<const PosedScene> emptyScene() {
+    auto posed = std::make_shared<PosedScene>();
+    posed->scene = std::make_shared<const Scene>();
+    return posed;
+}
+
 }  // namespace
 
 struct Tracer::Impl {
@@ -49,6 +55,10 @@ struct Tracer::Impl {
     std::mutex mutex;
     std::vector<std::unique_ptr<PathBatch>> spareBatches;
 
+    void makeTables() {
+        scene.tables = makeSceneTables(*scene.posed, scene.embree);
+        scene.lights.build(*scene.posed, scene.tables);
+    }
     std::unique_ptr<PathBatch> takeBatch() {
         std::lock_guard lock(mutex);
         if (spareBatches.empty()) return std::make_unique<PathBatch>();
@@ -80,9 +90,16 @@ void Tracer::bind(std::shared_ptr<const PosedScene> posed) {
     if (posed == scene.posed) return;
     // The old scene's data is in use until Embree and the tables have moved on.
     const std::shared_ptr<const PosedScene> earlier = std::exchange(scene.posed, posed);
-    scene.embree.bind(*posed);
-    scene.tables = makeSceneTables(*posed, scene.embree);
-    scene.lights.build(*posed, scene.tables);
+    try {
+        scene.embree.bind(*posed);
+    } catch (...) {
+        // What did not fit leaves nothing behind: an empty scene that can be traced.
+        scene.posed = emptyScene();
+        scene.embree.bind(*scene.posed);
+        impl_->makeTables();
+        throw;
+    }
+    impl_->makeTables();
     if (earlier && earlier->scene == posed->scene) return;
     parallelFor(static_cast<int64_t>(scene.tables.materials.size()), [&](int64_t i) {
         const MaterialRecord& material = scene.tables.materials[static_cast<size_t>(i)];
@@ -125,7 +142,8 @@ void makeStarts(const FrameSampling& sampling, int left, int top, uint64_t sampl
 
 bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_token stop,
                     std::span<PathObserver* const> extra) {
-    assert(sampling.jitter != Jitter::Auto && sampling.samplesPerPixel > 0 && sampling.camera.extent == sampling.extent);
+    assert(sampling.jitter != Jitter::Auto && sampling.samplesPerPixel > 0 &&
+           sampling.camera.extent == sampling.extent);
     signals.reset(sampling.extent, withDependencies(sampling.wanted), sampling.samplesPerPixel);
     if (sampling.extent.empty()) return true;
     SignalsObserver frame(impl_->scene, sampling, signals);
@@ -165,7 +183,8 @@ bool Tracer::Impl::traceBatches(std::span<const PathStart> starts, std::span<con
     std::atomic<int64_t> done{0};
     // A block ends where its last slot ends, so that no slot is in two batches at a time.
     const auto slotEnd = [&](int64_t i) {
-        while (i > 0 && i < count && starts[static_cast<size_t>(i)].slot == starts[static_cast<size_t>(i - 1)].slot) ++i;
+        while (i > 0 && i < count && starts[static_cast<size_t>(i)].slot == starts[static_cast<size_t>(i - 1)].slot)
+            ++i;
         return i;
     };
     parallelRanges(
@@ -178,10 +197,10 @@ bool Tracer::Impl::traceBatches(std::span<const PathStart> starts, std::span<con
             for (int64_t i = begin; i < end;) {
                 const auto size = static_cast<size_t>(std::min<int64_t>(end - i, PathBatch::kMost));
                 const auto first = static_cast<size_t>(i);
-                const bool whole = integrator.run(
-                    *batch, starts.subspan(first, size),
-                    firstPoints.empty() ? firstPoints : firstPoints.subspan(first, size),
-                    radiance.empty() ? radiance : radiance.subspan(first, size), firstPoints.empty(), counts, stop);
+                const bool whole = integrator.run(*batch, starts.subspan(first, size),
+                                                  firstPoints.empty() ? firstPoints : firstPoints.subspan(first, size),
+                                                  radiance.empty() ? radiance : radiance.subspan(first, size),
+                                                  firstPoints.empty(), counts, stop);
                 if (!whole) break;
                 done += static_cast<int64_t>(size);
                 i += static_cast<int64_t>(size);
@@ -292,7 +311,9 @@ TraceCounts Tracer::counts() const {
     return {impl_->cameraRays, impl_->bounceRays, impl_->shadowRays, impl_->nonFinite};
 }
 
-void Tracer::resetCounts() { impl_->cameraRays = impl_->bounceRays = impl_->shadowRays = impl_->nonFinite = 0; }
+void Tracer::resetCounts() {
+    impl_->cameraRays = impl_->bounceRays = impl_->shadowRays = impl_->nonFinite = 0;
+}
 
 size_t Tracer::byteCount() const {
     return impl_->scene.embree.byteCount() + impl_->scene.tables.byteCount() + impl_->scene.lights.byteCount();

@@ -47,7 +47,9 @@ TinyScene mixedScene() {
     return tiny;
 }
 
-Camera mixedCamera() { return lookFrom(Vec3(0.5f, 1.6f, 4.5f), Vec3(0, 0.5f, 0), 40); }
+Camera mixedCamera() {
+    return lookFrom(Vec3(0.5f, 1.6f, 4.5f), Vec3(0, 0.5f, 0), 40);
+}
 
 Signals render(std::shared_ptr<const PosedScene> posed, const Camera& camera, int spp, PathSettings path, uint32_t seed,
                const SignalSet& wanted = kMoments) {
@@ -63,7 +65,8 @@ TEST(Strategies, MisLightAndBsdfConvergeToOneImage) {
     const auto posed = mixedScene().pose();
     const Signals mis = render(posed, mixedCamera(), 256, plainPaths(4, DirectStrategy::Mis), 1);
     for (const auto strategy : {DirectStrategy::Light, DirectStrategy::Bsdf}) {
-        const Signals other = render(posed, mixedCamera(), 1024, plainPaths(4, strategy), 2 + static_cast<uint32_t>(strategy));
+        const Signals other =
+            render(posed, mixedCamera(), 1024, plainPaths(4, strategy), 2 + static_cast<uint32_t>(strategy));
         EXPECT_GE(agreeingShare(mis, other), 0.9975) << static_cast<int>(strategy);
         EXPECT_LT(std::abs(biasInSigmas(mis, other)), 4) << static_cast<int>(strategy);
     }
@@ -137,7 +140,8 @@ TEST(Instances, AgreeWithFlattenedMeshes) {
     EXPECT_LT(std::abs(biasInSigmas(one, two)), 4);
 
     // Geometry of one sample, same random numbers.
-    const Signals g1 = render(shared.pose(), camera, 1, path, 3, wanted), g2 = render(flat.pose(), camera, 1, path, 3, wanted);
+    const Signals g1 = render(shared.pose(), camera, 1, path, 3, wanted),
+                  g2 = render(flat.pose(), camera, 1, path, 3, wanted);
     int same = 0, all = 0;
     for (int y = 0; y < kExtent.height; ++y)
         for (int x = 0; x < kExtent.width; ++x) {

@@ -22,7 +22,9 @@ Estimate seenOnFloor(const Light& light, const Mat4& worldFromLight, int count, 
     return radianceAlong(tracer, Vec3(0.6f, 0.3f, 0.2f), Vec3(-0.6f, -0.3f, -0.2f), count, plainPaths(1, strategy));
 }
 
-Mat4 lightAt(const Vec3& position, const Vec3& target) { return lookAt(position, target, Vec3(0, 0, 1)); }
+Mat4 lightAt(const Vec3& position, const Vec3& target) {
+    return lookAt(position, target, Vec3(0, 0, 1));
+}
 
 class ClosedForms : public testing::TestWithParam<DirectStrategy> {};
 
@@ -50,7 +52,8 @@ TEST_P(ClosedForms, RectangleLight) {
     // Four corners of form factor from an element to a parallel rectangle above one of its corners.
     const double x = 0.6 / 1.0, y = 0.4 / 1.0;
     const double corner = (x / std::sqrt(1 + x * x) * std::atan(y / std::sqrt(1 + x * x)) +
-                           y / std::sqrt(1 + y * y) * std::atan(x / std::sqrt(1 + y * y))) / (2 * kPi);
+                           y / std::sqrt(1 + y * y) * std::atan(x / std::sqrt(1 + y * y))) /
+                          (2 * kPi);
     const double expected = kAlbedo * 2 * 4 * corner;
     const Estimate e = seenOnFloor(light, lightAt(Vec3(0, 1, 0), Vec3(0)), 60000, GetParam());
     EXPECT_LT(e.z(expected), kMostSigmas) << e.mean << " against " << expected;
@@ -101,10 +104,11 @@ TEST_P(ClosedForms, EmissiveTriangles) {
     tracer.bind(tiny.pose());
     const double x = 0.6, y = 0.4;
     const double corner = (x / std::sqrt(1 + x * x) * std::atan(y / std::sqrt(1 + x * x)) +
-                           y / std::sqrt(1 + y * y) * std::atan(x / std::sqrt(1 + y * y))) / (2 * kPi);
+                           y / std::sqrt(1 + y * y) * std::atan(x / std::sqrt(1 + y * y))) /
+                          (2 * kPi);
     const double expected = kAlbedo * 2 * 4 * corner;
-    const Estimate e = radianceAlong(tracer, Vec3(0.6f, 0.3f, 0.2f), Vec3(-0.6f, -0.3f, -0.2f), 60000,
-                                     plainPaths(1, GetParam()));
+    const Estimate e =
+        radianceAlong(tracer, Vec3(0.6f, 0.3f, 0.2f), Vec3(-0.6f, -0.3f, -0.2f), 60000, plainPaths(1, GetParam()));
     EXPECT_LT(e.z(expected), kMostSigmas) << e.mean << " against " << expected;
 }
 
@@ -114,8 +118,8 @@ TEST_P(ClosedForms, ConstantEnvironment) {
     tiny.scene.environment.constant = Vec3(1.5f);
     Tracer tracer;
     tracer.bind(tiny.pose());
-    const Estimate e = radianceAlong(tracer, Vec3(0.6f, 0.3f, 0.2f), Vec3(-0.6f, -0.3f, -0.2f), 40000,
-                                     plainPaths(1, GetParam()));
+    const Estimate e =
+        radianceAlong(tracer, Vec3(0.6f, 0.3f, 0.2f), Vec3(-0.6f, -0.3f, -0.2f), 40000, plainPaths(1, GetParam()));
     EXPECT_LT(e.z(kAlbedo * 1.5), kMostSigmas) << e.mean;
 }
 

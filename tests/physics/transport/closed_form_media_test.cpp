@@ -51,7 +51,8 @@ TEST(Furnace, DepthCutsTheSeries) {
     double expected = 1;
     for (int depth = 1; depth <= 3; ++depth) {
         expected += std::pow(0.5, depth);
-        const Estimate e = radianceAlong(tracer, Vec3(0.1f, 0.2f, 0.3f), Vec3(1, 0.4f, -0.3f), 20000, plainPaths(depth));
+        const Estimate e =
+            radianceAlong(tracer, Vec3(0.1f, 0.2f, 0.3f), Vec3(1, 0.4f, -0.3f), 20000, plainPaths(depth));
         EXPECT_LT(e.z(expected), kMostSigmas) << e.mean << " at depth " << depth;
     }
 }
@@ -139,7 +140,8 @@ TEST(Alpha, MaskIsAllOrNothing) {
         tiny.add(rectangleMesh(2, 2, Facing::Z), leaf);
         Tracer tracer;
         tracer.bind(tiny.pose());
-        EXPECT_EQ(radianceAlong(tracer, Vec3(0, 0, 3), Vec3(0.01f, 0, -1), 64, plainPaths(1)).mean, alpha > 0.5f ? 1 : 0);
+        EXPECT_EQ(radianceAlong(tracer, Vec3(0, 0, 3), Vec3(0.01f, 0, -1), 64, plainPaths(1)).mean,
+                  alpha > 0.5f ? 1 : 0);
     }
 }
 

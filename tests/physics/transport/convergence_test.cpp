@@ -77,7 +77,8 @@ TEST(Stop, ReturnsSoonAndSaysSo) {
         asked = std::chrono::steady_clock::now();
         source.request_stop();
     });
-    const bool whole = tracer.sample(frameOf(kView, extent, 512, PathSettings(), SignalSet::all()), signals, source.get_token());
+    const bool whole =
+        tracer.sample(frameOf(kView, extent, 512, PathSettings(), SignalSet::all()), signals, source.get_token());
     const auto done = std::chrono::steady_clock::now();
     asker.join();
     EXPECT_FALSE(whole);
@@ -93,7 +94,8 @@ TEST(Stop, BeforeTheStartTracesNothing) {
     std::stop_source source;
     source.request_stop();
     Signals signals;
-    EXPECT_FALSE(tracer.sample(frameOf(kView, kExtent, 1, PathSettings(), SignalSet::all()), signals, source.get_token()));
+    EXPECT_FALSE(
+        tracer.sample(frameOf(kView, kExtent, 1, PathSettings(), SignalSet::all()), signals, source.get_token()));
     EXPECT_EQ(tracer.counts().total(), 0u);
 }
 

@@ -22,8 +22,8 @@ DVec3 projectExactly(const Camera& camera, const DVec3& p) {
     const DVec3 d = p - DVec3(camera.eye);
     const double depth = -glm::dot(d, back);
     const double scale = kExtent.height / 2.0 / std::tan(double(camera.fovYDeg) * 3.14159265358979323846 / 360);
-    return {kExtent.width / 2.0 + glm::dot(d, right) / depth * scale, kExtent.height / 2.0 - glm::dot(d, up) / depth * scale,
-            depth};
+    return {kExtent.width / 2.0 + glm::dot(d, right) / depth * scale,
+            kExtent.height / 2.0 - glm::dot(d, up) / depth * scale, depth};
 }
 
 /// Renders one frame and compares each surface pixel's motion with `previous` of its point.
@@ -42,10 +42,13 @@ void expectMotion(const std::shared_ptr<const PosedScene>& posed, const Camera& 
     for (int y = 0; y < kExtent.height; ++y)
         for (int x = 0; x < kExtent.width; ++x) {
             if (s.ids(Signal::ObjectId).at(0, x, y) == 0) continue;
-            const DVec3 now(s[Signal::Position].at(0, x, y), s[Signal::Position].at(1, x, y), s[Signal::Position].at(2, x, y));
+            const DVec3 now(s[Signal::Position].at(0, x, y), s[Signal::Position].at(1, x, y),
+                            s[Signal::Position].at(2, x, y));
             const IdImage& id = s.ids(Signal::Surface);
-            const SurfacePoint point{id.at(0, x, y), id.at(1, x, y),
-                                     {std::bit_cast<float>(id.at(2, x, y)), std::bit_cast<float>(id.at(3, x, y))}, 0};
+            const SurfacePoint point{id.at(0, x, y),
+                                     id.at(1, x, y),
+                                     {std::bit_cast<float>(id.at(2, x, y)), std::bit_cast<float>(id.at(3, x, y))},
+                                     0};
             const DVec3 truth = projectExactly(before, previous(point, now)) - projectExactly(camera, now);
             const Image& motion = s[Signal::Motion];
             EXPECT_NEAR(motion.at(0, x, y), truth.x, kMostPixels) << x << ' ' << y;
@@ -65,7 +68,8 @@ TEST(Motion, OfTheCamera) {
     tiny.add(floorMesh(8), lambert(0.5f));
     tiny.add(sphereMesh(0.6f, 32, 16), lambert(0.5f), translation(Vec3(0, 0.6f, 0)));
     const Camera before = lookFrom(Vec3(0.3f, 1.3f, 4.2f), Vec3(0.1f, 0.45f, 0.1f), 45);
-    expectMotion(tiny.pose(), kNow, before, [](const SurfacePoint&, const DVec3& p) { return p; }, 900);
+    expectMotion(
+        tiny.pose(), kNow, before, [](const SurfacePoint&, const DVec3& p) { return p; }, 900);
 }
 
 TEST(Motion, OfTheSkyIsRotationAlone) {
@@ -131,8 +135,9 @@ TEST(Motion, OfRigidThings) {
         return m;
     };
     const DMat4 back = at(t0) * glm::inverse(at(t1));
-    expectMotion(tiny.pose({t1, t1, t0}), kNow, kNow,
-                 [&](const SurfacePoint&, const DVec3& p) { return DVec3(back * DVec4(p, 1)); }, 150);
+    expectMotion(
+        tiny.pose({t1, t1, t0}), kNow, kNow,
+        [&](const SurfacePoint&, const DVec3& p) { return DVec3(back * DVec4(p, 1)); }, 150);
 }
 
 TEST(Motion, OfMorphingThings) {
@@ -147,13 +152,14 @@ TEST(Motion, OfMorphingThings) {
     tiny.scene.nodes[static_cast<size_t>(node)].morphWeights = {0};
     animate(tiny.scene, {channel(node, AnimatedProperty::MorphWeights, 1, {0, 1})});
     const double t0 = 0.4, t1 = 0.6;
-    expectMotion(tiny.pose({float(t1), float(t1), float(t0)}), kNow, kNow,
-                 [&](const SurfacePoint&, const DVec3& p) {
-                     // Undo the shear of now: x + 0.8 w y, y, z + 0.3 w x.
-                     const double y = p.y - 0.5, x = p.x - 0.8 * t1 * y;
-                     return DVec3(x + 0.8 * t0 * y, p.y, 0.3 * t0 * x);
-                 },
-                 300);
+    expectMotion(
+        tiny.pose({float(t1), float(t1), float(t0)}), kNow, kNow,
+        [&](const SurfacePoint&, const DVec3& p) {
+            // Undo the shear of now: x + 0.8 w y, y, z + 0.3 w x.
+            const double y = p.y - 0.5, x = p.x - 0.8 * t1 * y;
+            return DVec3(x + 0.8 * t0 * y, p.y, 0.3 * t0 * x);
+        },
+        300);
 }
 
 TEST(Motion, OfSkinnedThings) {
@@ -172,12 +178,13 @@ TEST(Motion, OfSkinnedThings) {
     const float h = std::sqrt(0.5f);
     animate(tiny.scene, {channel(joint, AnimatedProperty::Rotation, 4, {0, 0, 0, 1, 0, h, 0, h})});
     const double t0 = 0.2, t1 = 0.3;
-    expectMotion(tiny.pose({float(t1), float(t1), float(t0)}), kNow, kNow,
-                 [&](const SurfacePoint&, const DVec3& p) {
-                     const DMat4 back = rotationAboutY((t0 - t1) * 3.14159265358979323846 / 2);
-                     return DVec3(back * DVec4(p, 1));
-                 },
-                 200);
+    expectMotion(
+        tiny.pose({float(t1), float(t1), float(t0)}), kNow, kNow,
+        [&](const SurfacePoint&, const DVec3& p) {
+            const DMat4 back = rotationAboutY((t0 - t1) * 3.14159265358979323846 / 2);
+            return DVec3(back * DVec4(p, 1));
+        },
+        200);
 }
 
 TEST(Motion, FollowsAcrossBindsOfTheSameTracer) {

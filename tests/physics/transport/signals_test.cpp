@@ -57,7 +57,8 @@ TEST_F(SignalsContract, PartsAddUpToTheWhole) {
                     const double indirect = at(Signal::Albedo) * at(Signal::IndirectDiffuse) +
                                             at(Signal::SpecularAlbedo) * at(Signal::IndirectSpecular);
                     const double tolerance = 1e-5 * (1 + at(Signal::Noisy));
-                    ASSERT_NEAR(at(Signal::Emission) + direct + indirect, at(Signal::Noisy), tolerance) << x << ' ' << y;
+                    ASSERT_NEAR(at(Signal::Emission) + direct + indirect, at(Signal::Noisy), tolerance)
+                        << x << ' ' << y;
                     ASSERT_NEAR(direct, at(Signal::Direct), tolerance);
                     ASSERT_NEAR(indirect, at(Signal::Indirect), tolerance);
                     ASSERT_GE(at(Signal::Albedo), 0.01);
@@ -90,7 +91,9 @@ TEST_F(SignalsContract, GeometryIsConsistent) {
     int surfaces = 0;
     for (int y = 0; y < kExtent.height; ++y)
         for (int x = 0; x < kExtent.width; ++x) {
-            const auto vec = [&](Signal signal) { return Vec3(s[signal].at(0, x, y), s[signal].at(1, x, y), s[signal].at(2, x, y)); };
+            const auto vec = [&](Signal signal) {
+                return Vec3(s[signal].at(0, x, y), s[signal].at(1, x, y), s[signal].at(2, x, y));
+            };
             const float depth = s[Signal::Depth].at(0, x, y);
             if (s.ids(Signal::ObjectId).at(0, x, y) == 0) {
                 EXPECT_EQ(depth, kInfinity);
@@ -111,8 +114,10 @@ TEST_F(SignalsContract, GeometryIsConsistent) {
             EXPECT_GT(glm::dot(wo, vec(Signal::Normal)), 0);
             EXPECT_EQ(vec(Signal::Motion), Vec3(0));
             const IdImage& id = s.ids(Signal::Surface);
-            const SurfacePoint point{id.at(0, x, y), id.at(1, x, y),
-                                     {std::bit_cast<float>(id.at(2, x, y)), std::bit_cast<float>(id.at(3, x, y))}, 0};
+            const SurfacePoint point{id.at(0, x, y),
+                                     id.at(1, x, y),
+                                     {std::bit_cast<float>(id.at(2, x, y)), std::bit_cast<float>(id.at(3, x, y))},
+                                     0};
             EXPECT_LT(glm::distance(tracer_.position(point), vec(Signal::Position)), 1e-5f);
         }
     EXPECT_GT(surfaces, 600);
@@ -161,7 +166,8 @@ TEST_F(SignalsContract, SampleVarianceIsThatOfSingleSamples) {
 
 TEST_F(SignalsContract, AskingForLessChangesNothing) {
     const Signals all = frame(2);
-    for (const Signal wanted : {Signal::Noisy, Signal::Normal, Signal::DirectDiffuse, Signal::Motion, Signal::Visibility}) {
+    for (const Signal wanted :
+         {Signal::Noisy, Signal::Normal, Signal::DirectDiffuse, Signal::Motion, Signal::Visibility}) {
         FrameSampling sampling = frameOf(camera_, kExtent, 2, PathSettings(), {wanted}, 3);
         Signals signals;
         ASSERT_TRUE(tracer_.sample(sampling, signals));
@@ -180,7 +186,8 @@ TEST(Visibility, IsTheShareOfUnblockedLightSamples) {
     tracer.bind(tiny.pose());
     Signals signals;
     const Camera camera = lookFrom(Vec3(0.01f, 0.9f, 0), Vec3(0, 0, 0), 90);
-    ASSERT_TRUE(tracer.sample(frameOf(camera, {32, 32}, 1, plainPaths(1), {Signal::Visibility, Signal::Position}), signals));
+    ASSERT_TRUE(
+        tracer.sample(frameOf(camera, {32, 32}, 1, plainPaths(1), {Signal::Visibility, Signal::Position}), signals));
     for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 32; ++x) {
             const float px = signals[Signal::Position].at(0, x, y);

@@ -27,7 +27,8 @@ Environment spottedSky(int width, int height) {
 TEST(EnvironmentLight, LookupFollowsTheContract) {
     auto image = std::make_shared<Image>(Extent2{8, 4}, 3);
     for (int y = 0; y < 4; ++y)
-        for (int x = 0; x < 8; ++x) image->at(0, x, y) = static_cast<float>(x), image->at(1, x, y) = static_cast<float>(y);
+        for (int x = 0; x < 8; ++x)
+            image->at(0, x, y) = static_cast<float>(x), image->at(1, x, y) = static_cast<float>(y);
     Environment sky;
     sky.image = image;
     EnvironmentLight light;
@@ -58,8 +59,10 @@ TEST(EnvironmentLight, DensityIntegratesToOneAndMatchesItsSamples) {
             ASSERT_GT(pdf, 0);
             ASSERT_NEAR(glm::length(direction), 1, 1e-5);
             // A sample on a cell's border may fall to either side.
-            if (i < 2000 && std::abs(light.pdf(direction) - pdf) > 1e-3f * pdf) inverse.add(0);
-            else if (i < 2000) inverse.add(1);
+            if (i < 2000 && std::abs(light.pdf(direction) - pdf) > 1e-3f * pdf)
+                inverse.add(0);
+            else if (i < 2000)
+                inverse.add(1);
             integral.add(radiance.y / pdf);
         }
         EXPECT_GT(inverse.mean(), 0.995);

@@ -132,8 +132,9 @@ TEST(Lights, PickProbabilitiesAreOneTogetherAndCoverEveryEmitter) {
 }
 
 TEST(Lights, DensityOfHitsIntegratesToTheChanceOfExtendedLights) {
-    // Over all directions from a point that sees every emitter whole: each direction's densities of all lights along it,
-    // blocked or not, add up to 1 less the point light's share; nothing blocks anything here but a closed body's far side.
+    // Over all directions from a point that sees every emitter whole: each direction's densities of all lights along
+    // it, blocked or not, add up to 1 less the point light's share; nothing blocks anything here but a closed body's
+    // far side.
     TraceScene scene;
     bindTo(scene, manyLights().pose());
     const Vec3 eye(0.1f, 0.05f, 0.1f);
@@ -186,10 +187,9 @@ TEST(Lights, SamplesCarryTheDensityOfTheirHit) {
         EXPECT_NEAR(hit.distance, light.distance, 1e-3f * light.distance);
         const SurfacePoint point = surfacePoint(scene.tables, hit, eye + light.direction * hit.distance, 0);
         const Surface s = evaluateSurface(scene.tables, point, -light.direction, 0);
-        const float density =
-            s.body >= 0 ? scene.lights.pdfBody(s.body, eye, light.direction, s.position)
-                        : scene.lights.pdfTriangle(point.instance, point.primitive, eye, light.direction, s.position,
-                                                   s.outwardNormal);
+        const float density = s.body >= 0 ? scene.lights.pdfBody(s.body, eye, light.direction, s.position)
+                                          : scene.lights.pdfTriangle(point.instance, point.primitive, eye,
+                                                                     light.direction, s.position, s.outwardNormal);
         EXPECT_NEAR(density, light.pdf, 0.02f * light.pdf);
         EXPECT_LT(glm::distance(s.emitted, light.radiance), 1e-5f);
         ++compared;

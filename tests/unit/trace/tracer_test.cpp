@@ -4,6 +4,8 @@
 #include <map>
 #include <mutex>
 
+#include "base/error.h"
+#include "base/memory.h"
 #include "support/transport_scene.h"
 
 namespace lumi {
@@ -40,7 +42,8 @@ TEST(Tracer, HitsAreNamedAndFoundAgain) {
     // The lamp's body is an exact sphere, named by where it was hit.
     EXPECT_EQ(hits[2].point.instance, 2u);
     EXPECT_NEAR(hits[2].distance, 1 - std::sqrt(0.09f - 0.01f), 1e-4);
-    EXPECT_LT(glm::distance(tracer.position(hits[2].point), rays[2].origin + rays[2].direction * hits[2].distance), 1e-4f);
+    EXPECT_LT(glm::distance(tracer.position(hits[2].point), rays[2].origin + rays[2].direction * hits[2].distance),
+              1e-4f);
     EXPECT_FALSE(hits[3].valid());
 }
 
@@ -111,7 +114,8 @@ public:
             depths[slot] = std::max(depths[slot], batch.depth + 1);
         }
     }
-    void finished(std::span<const uint32_t> slots, std::span<const uint32_t> samples, std::span<const Vec3> radiance) override {
+    void finished(std::span<const uint32_t> slots, std::span<const uint32_t> samples,
+                  std::span<const Vec3> radiance) override {
         for (size_t i = 0; i < slots.size(); ++i) {
             inOrder &= static_cast<int64_t>(samples[i]) > last[slots[i]];
             last[slots[i]] = samples[i];
@@ -164,7 +168,8 @@ TEST(Tracer, CountsItsRays) {
     Tracer tracer;
     tracer.bind(litFloor().pose());
     Signals signals;
-    ASSERT_TRUE(tracer.sample(frameOf(lookFrom(Vec3(0, 3, 5), Vec3(0)), {20, 10}, 2, plainPaths(2), {Signal::Noisy}), signals));
+    ASSERT_TRUE(
+        tracer.sample(frameOf(lookFrom(Vec3(0, 3, 5), Vec3(0)), {20, 10}, 2, plainPaths(2), {Signal::Noisy}), signals));
     const TraceCounts counts = tracer.counts();
     EXPECT_EQ(counts.cameraRays, 400u);
     EXPECT_GT(counts.bounceRays, 300u);
@@ -181,7 +186,8 @@ TEST(Tracer, BindsAgainAfterEdits) {
     Tracer tracer;
     tracer.bind(first);
     Signals before, after;
-    const FrameSampling sampling = frameOf(lookFrom(Vec3(0, 3, 5), Vec3(0)), {16, 12}, 4, plainPaths(2), {Signal::Noisy});
+    const FrameSampling sampling =
+        frameOf(lookFrom(Vec3(0, 3, 5), Vec3(0)), {16, 12}, 4, plainPaths(2), {Signal::Noisy});
     ASSERT_TRUE(tracer.sample(sampling, before));
     // Twice the lamp: twice the light, and back again the same bytes.
     TinyScene brighter = tiny;
@@ -189,7 +195,8 @@ TEST(Tracer, BindsAgainAfterEdits) {
     tracer.bind(brighter.pose());
     ASSERT_TRUE(tracer.sample(sampling, after));
     for (size_t i = 0; i < after[Signal::Noisy].size(); ++i)
-        EXPECT_NEAR(after[Signal::Noisy].data()[i], 2 * before[Signal::Noisy].data()[i], 1e-4f * (1 + after[Signal::Noisy].data()[i]));
+        EXPECT_NEAR(after[Signal::Noisy].data()[i], 2 * before[Signal::Noisy].data()[i],
+                    1e-4f * (1 + after[Signal::Noisy].data()[i]));
     tracer.bind(tiny.pose());
     ASSERT_TRUE(tracer.sample(sampling, after));
     EXPECT_TRUE(before[Signal::Noisy] == after[Signal::Noisy]);
@@ -204,6 +211,25 @@ TEST(Tracer, BindsAgainAfterEdits) {
     tracer.bind(tiny.pose());
     tracer.closestHits({&down, 1}, {&hit, 1});
     EXPECT_NEAR(hit.distance, 1.5f, 1e-5);
+}
+
+TEST(Tracer, RefusesWhatPassesTheMemoryLimitAndGoesOn) {
+    TinyScene tiny;
+    tiny.add(sphereMesh(1, 512, 256), lambert(0.5f));
+    const auto large = tiny.pose();
+    Tracer tracer;
+    tracer.bind(litFloor().pose());
+    const uint64_t limit = memoryLimit();
+    setMemoryLimit(residentBytes() + (1 << 20));
+    EXPECT_THROW(tracer.bind(large), Error);
+    setMemoryLimit(limit);
+    const Ray down{Vec3(0.2f, 5, 0.1f), 0, Vec3(0, -1, 0), kInfinity, 0};
+    Hit hit;
+    tracer.closestHits({&down, 1}, {&hit, 1});
+    EXPECT_FALSE(hit.valid());
+    tracer.bind(large);
+    tracer.closestHits({&down, 1}, {&hit, 1});
+    EXPECT_NEAR(hit.distance, 4, 0.1);
 }
 
 TEST(CameraRays, GoWhereTheCameraProjects) {

@@ -1,0 +1,66 @@
+// How each instance of a posed scene is attached to Embree.
+#include <algorithm>
+#include <unordered_map>
+
+#include "trace/embree_parts.h"
+
+namespace lumi {
+namespace {
+
+/// For each node: does an animation move it or one of its parents?
+std::vector<bool> animatedNodes(const Scene& scene) {
+    std::vector<bool> animated(scene.nodes.size(), false);
+    for (const Animation& animation : scene.animations)
+        for (const AnimationChannel& channel : animation.channels)
+            if (channel.property != AnimatedProperty::MorphWeights && channel.node >= 0)
+                animated[static_cast<size_t>(channel.node)] = true;
+    for (size_t i = 0; i < scene.nodes.size(); ++i)
+        if (scene.nodes[i].parent >= 0 && animated[static_cast<size_t>(scene.nodes[i].parent)]) animated[i] = true;
+    return animated;
+}
+
+bool hasAlpha(const Scene& scene, const Instance& instance) {
+    const auto masked = [&](uint32_t material) {
+        return material < scene.materials.size() && scene.materials[material].hasAlpha();
+    };
+    if (instance.material >= 0) return masked(static_cast<uint32_t>(instance.material));
+    const Mesh& mesh = *instance.mesh;
+    if (mesh.triangleMaterial.empty()) return masked(mesh.material);
+    return std::any_of(mesh.triangleMaterial.begin(), mesh.triangleMaterial.end(), masked);
+}
+
+}  // namespace
+
+std::vector<EmbreeScene::Plan> EmbreeScene::makePlans(const PosedScene& posed) const {
+    const Scene& scene = *posed.scene;
+    const std::vector<bool> animated = animatedNodes(scene);
+    std::unordered_map<const Mesh*, int> uses;
+    for (const Instance& instance : scene.instances) ++uses[instance.mesh.get()];
+
+    std::vector<Plan> plans(scene.instances.size());
+    for (size_t i = 0; i < plans.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const PosedInstance& pose = posed.instances[i];
+        Plan& plan = plans[i];
+        // What moved once may move again: it stays an instance.
+        const bool moved = i < plans_.size() && plans_[i].mesh == instance.mesh.get() &&
+                           (plans_[i].mode == Mode::Instanced || plans_[i].mode == Mode::MovingBody);
+        const bool moves = pose.moves || moved || (instance.node >= 0 && animated[static_cast<size_t>(instance.node)]);
+        plan.mesh = instance.mesh.get();
+        plan.worldFromObject = pose.worldFromObject;
+        if (instance.light >= 0 && hasBody(scene.lights[static_cast<size_t>(instance.light)].type)) {
+            const auto light = static_cast<size_t>(instance.light);
+            plan.mode = moves ? Mode::MovingBody : Mode::Body;
+            plan.shape = lightShape(scene.lights[light], posed.lights[light].worldFromLight);
+            plan.shape.radiance = Vec3(0);
+        } else if (!plan.mesh || plan.mesh->triangles.empty()) {
+            plan.mode = Mode::None;
+        } else {
+            plan.filtered = hasAlpha(scene, instance);
+            plan.mode = pose.deformed ? Mode::Deforming : moves || uses[plan.mesh] > 1 ? Mode::Instanced : Mode::Direct;
+        }
+    }
+    return plans;
+}
+
+}  // namespace lumi
