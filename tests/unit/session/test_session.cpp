@@ -79,11 +79,17 @@ TEST_F(SessionTest, AChangeAbandonsTheFrameInFlight) {
     RecordProperty("slowestAbandonMs", std::to_string(slowestMs));
     std::printf("    slowest abandoned frame: %.1f ms\n", slowestMs);
     // In a stream of changes the frame after an abandoned one may go on, but not for long once the stream ends.
-    for (int change = 0; change < 5; ++change) session.set("render.seed", 20 + change);
+    const uint64_t before = session.abandonedFrames();
+    for (int change = 0; change < 5; ++change) {
+        session.set("render.seed", 20 + change);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
     session.setAll({{"render.width", 16}, {"render.height", 12}, {"render.spp", 1}});
     timer.restart();
     waitFor("small frames", [&] { return session.snapshot()->extent.width == 16; });
     std::printf("    the last of a stream is seen after %.1f ms\n", timer.elapsedMs());
+    EXPECT_GT(session.abandonedFrames(), before);
+    EXPECT_LT(timer.elapsedMs(), 3000) << "such a frame takes longer";
 }
 
 TEST_F(SessionTest, DisplayChangesDoNotRenderAgain) {
