@@ -90,7 +90,7 @@ class Info(CommandTest):
             self.assertGreater(info["triangles"], 0)
 
     def test_the_signals_hold_what_they_promise(self):
-        for scene in ("cornell", "parade", "still-life"):
+        for scene in ("cornell", "atrium", "parade", "still-life"):
             info = self.good("info", scene, "--check", "--json", "--set", "render.width=160", "--set",
                              "render.height=90").json
             checks = info["checks"]
