@@ -90,9 +90,9 @@ class Render(CommandTest):
             self.assertIn(attribute, header)
 
     def test_options_are_parameters(self):
-        self.good("render", "cornell", *QUIET, "--spp", 3, "--exposure", "-1.5", "--camera", "inside", "--seed", 4, "--out", "a.png")
+        self.good("render", "cornell", *QUIET, "--spp", 3, "--exposure", "-1.5", "--camera", "corner", "--seed", 4, "--out", "a.png")
         self.good("render", "cornell", "--quiet", "--set", "render.width=24", "--set", "render.height=16", "--set",
-                  "render.spp=3", "--set", "view.0.exposure=-1.5", "--set", "camera.select=inside", "--set",
+                  "render.spp=3", "--set", "view.0.exposure=-1.5", "--set", "camera.select=corner", "--set",
                   "render.seed=4", "--out", "b.png")
         self.assertEqual(self.bytes("a.png"), self.bytes("b.png"))
 

@@ -20,7 +20,7 @@ class Usage(CommandTest):
         self.refused(2, ['"acumulate"', '"accumulate"', "--module"], "render", "cornell", "--module", "acumulate")
         self.refused(2, ['"path.max-dept"', '"path.max-depth"', "--set"], "render", "cornell", "--set", "path.max-dept=2")
         self.refused(2, ['"albdo"', '"albedo"', "--buffers"], "render", "cornell", "--buffers", "albdo")
-        self.refused(2, ["main", "inside", "--camera"], "render", "cornell", "--camera", "nowhere")
+        self.refused(2, ["main", "corner", "--camera"], "render", "cornell", "--camera", "nowhere")
         self.refused(2, ["scenes", "parameters", "metrics"], "list", "things")
         self.refused(2, ["v3", "--isa"], "render", "cornell", "--isa", "v9")
         self.assertEqual(self.files(), [])
