@@ -201,10 +201,10 @@ float EnvironmentLight::density(int column, int row) const {
            (columnCdf[column + 1] - columnCdf[column]) * static_cast<float>(rows_) * static_cast<float>(columns_);
 }
 
-Vec3 EnvironmentLight::sample(Vec2 u, float& pdf, Vec3& radiance) const {
+Vec3 EnvironmentLight::sample(Vec2 u, float& pdf, Vec2& place) const {
     if (!image_) {
         pdf = pdfSphere();
-        radiance = constant_;
+        place = Vec2(0);
         return sampleSphere(u);
     }
     const int row = findInterval(rowCdf_.data(), rowGuide_.data(), rows_, u.y);
@@ -219,7 +219,11 @@ Vec3 EnvironmentLight::sample(Vec2 u, float& pdf, Vec3& radiance) const {
                   (static_cast<float>(row) + within(rowCdf_.data(), row, u.y)) / static_cast<float>(rows_));
     const float sine = std::sin(uv.y * kPi);
     pdf = sine > 0 ? density(column, row) / (2 * kPi * kPi * sine) : 0;
-    radiance = imageRadiance(uv);
+    place = uv;
+    const auto texelX = static_cast<size_t>(uv.x * static_cast<float>(width_ - 1));
+    const auto texelY = static_cast<size_t>(uv.y * static_cast<float>(height_ - 1));
+    __builtin_prefetch(&texels_[texelY * static_cast<size_t>(width_) + texelX]);
+    if (texelY > 0) __builtin_prefetch(&texels_[(texelY - 1) * static_cast<size_t>(width_) + texelX]);
     return toWorld(directionFromLatLong(uv));
 }
 

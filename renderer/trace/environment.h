@@ -17,8 +17,10 @@ public:
     bool black() const { return black_; }
     /// Radiance from unit world direction `direction`.
     Vec3 radiance(const Vec3& direction) const;
-    /// A direction with light, its density per solid angle and its radiance.
-    Vec3 sample(Vec2 u, float& pdf, Vec3& radiance) const;
+    /// A direction with light, its density per solid angle and its place in the image, which is asked for from memory:
+    /// take radianceAt() a little later.
+    Vec3 sample(Vec2 u, float& pdf, Vec2& place) const;
+    Vec3 radianceAt(Vec2 place) const { return image_ ? imageRadiance(place) : constant_; }
     float pdf(const Vec3& direction) const;
     /// Mean over the sphere of the luminance.
     float meanLuminance() const { return meanLuminance_; }

@@ -256,7 +256,7 @@ void Integrator::sampleLight(PathBatch& batch, uint32_t index, const Surface& su
     const BsdfValue f = bsdf.evaluate(wi);
     const bool mixed = light.hittable && settings_.strategy == DirectStrategy::Mis;
     const float weight = (mixed ? misWeight(light.pdf, f.pdf) : 1) / light.pdf;
-    Vec3 radiance = light.radiance * weight;
+    Vec3 radiance = scene_.lights.radiance(light) * weight;
     if (std::isfinite(light.distance))
         radiance *= transmittance(absorptionTowards(path, surface, wi.z < 0), light.distance);
     Vec3 diffuse = f.diffuse * radiance, specular = f.specular * radiance;

@@ -162,6 +162,7 @@ bool Lights::sample(const Vec3& position, Vec2 pick, Vec2 u, LightSample& out) c
     out.light = static_cast<int>(chosen);
     out.delta = false;
     out.hittable = true;
+    out.sky = false;
     bool reached = false;
     switch (entry.kind) {
         case Kind::Triangle:
@@ -177,13 +178,14 @@ bool Lights::sample(const Vec3& position, Vec2 pick, Vec2 u, LightSample& out) c
             reached = sampleSun(suns_[entry.index], u, out);
             break;
         case Kind::Environment:
-            out.direction = out.position = environment_.sample(u, out.pdf, out.radiance);
+            out.direction = out.position = environment_.sample(u, out.pdf, out.skyPlace);
             out.distance = kInfinity;
+            out.sky = true;
             reached = out.pdf > 0;
             break;
     }
     out.pdf *= picks_.probability(chosen);
-    return reached && out.pdf > 0 && maxComponent(out.radiance) > 0;
+    return reached && out.pdf > 0 && (out.sky || maxComponent(out.radiance) > 0);
 }
 
 bool Lights::sampleTriangle(const Triangle& triangle, const Vec3& position, Vec2 u, LightSample& out) const {

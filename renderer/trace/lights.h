@@ -13,8 +13,10 @@ struct LightSample {
     Vec3 direction{0};   ///< unit, from the shading point
     float distance = 0;  ///< metres; +inf for infinite lights
     Vec3 target{0};      ///< where a shadow ray ends: the light's point moved off its surface (finite lights)
-    Vec3 radiance{0};    ///< towards the shading point; for lights without extent radiance times solid angle
-    float pdf = 0;  ///< per solid angle, choice of the light included; for lights without extent of the choice alone
+    Vec2 skyPlace{0};    ///< of the sky's samples: their radiance is looked up by Lights::radiance()
+    bool sky = false;
+    Vec3 radiance{0};  ///< towards the shading point; for lights without extent radiance times solid angle
+    float pdf = 0;     ///< per solid angle, choice of the light included; for lights without extent of the choice alone
     bool delta = false;     ///< without extent: no other technique finds it
     bool hittable = false;  ///< continued paths find it too
     int light = -1;         ///< entry
@@ -40,6 +42,11 @@ public:
 
     /// Chooses a light by `pick` and a point of it by `u`. False if nothing can reach `position` that way.
     bool sample(const Vec3& position, Vec2 pick, Vec2 u, LightSample& out) const;
+
+    /// The sample's radiance: sky is looked up here, so that samples that cannot contribute never wait for memory.
+    Vec3 radiance(const LightSample& sample) const {
+        return sample.sky ? environment_.radianceAt(sample.skyPlace) : sample.radiance;
+    }
 
     /// Density with which sample() from `position` makes `direction`, which meets an emissive triangle at
     /// `hitPosition` (unit `hitNormal`) or a light's body.
