@@ -84,14 +84,16 @@ void EmbreeScene::throwIfFailed(const char* step) const {
     throw Error(ErrorKind::Resources, {fmt::format("{} failed in Embree: {}", step, text), "", "", ""});
 }
 
-void EmbreeScene::bind(const PosedScene& posed) {
+bool EmbreeScene::bind(const PosedScene& posed) {
     // Embree may take what the process has left; its own share of that is counted by the monitor.
     const auto resident = static_cast<int64_t>(std::min(residentBytes(), memoryLimit()));
     monitor_->allowed = static_cast<int64_t>(memoryLimit()) - resident + monitor_->bytes;
     posed_ = &posed;
     try {
         std::vector<Plan> plans = makePlans(posed);
-        if (!top_ || !update(posed, plans)) rebuild(posed, std::move(plans));
+        if (top_ && update(posed, plans)) return false;
+        rebuild(posed, std::move(plans));
+        return true;
     } catch (...) {
         clear();
         top_ = newScene();

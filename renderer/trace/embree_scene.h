@@ -26,8 +26,9 @@ public:
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
     /// Builds what `posed` needs and keeps what did not change since the last call. `posed` must outlive the tracing.
+    /// Returns true if attachments were made anew: worldPositions() are others then.
     /// Throws Error(Resources) if Embree runs out of memory or past the limit; the scene is empty then.
-    void bind(const PosedScene& posed);
+    bool bind(const PosedScene& posed);
 
     RTCScene handle() const { return top_; }
     /// World-space vertices of an instance that was attached as triangles; null for all others.

@@ -85,7 +85,10 @@ InstanceRecord makeInstance(const PosedScene& posed, const EmbreeScene& embree, 
     float largestRow = 0;
     for (int row = 0; row < 3; ++row)
         largestRow = std::max(largestRow, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
-    r.objectScale = largestRow * largestCoordinate(r.positions, count);
+    const bool known = !pose.deformed && posed.meshBounds && index < posed.meshBounds->size();
+    const Vec3 corners[] = {known ? (*posed.meshBounds)[index].lower : Vec3(0),
+                            known ? (*posed.meshBounds)[index].upper : Vec3(0)};
+    r.objectScale = largestRow * (known ? largestCoordinate(corners, 2) : largestCoordinate(r.positions, count));
     return r;
 }
 

@@ -40,6 +40,20 @@ std::vector<int> mortonOrder(int columns, int rows) {
     return order;
 }
 
+/// Do tables and lights of one posed scene serve the other?
+bool shadesAlike(const PosedScene& a, const PosedScene& b) {
+    if (a.scene != b.scene) return false;
+    for (size_t i = 0; i < a.instances.size(); ++i)
+        if (a.instances[i].worldFromObject != b.instances[i].worldFromObject ||
+            a.instances[i].deformed != b.instances[i].deformed)
+            return false;
+    for (size_t i = 0; i < a.lights.size(); ++i)
+        if (a.lights[i].worldFromLight != b.lights[i].worldFromLight ||
+            a.lights[i].worldFromLightPrevious != b.lights[i].worldFromLightPrevious)
+            return false;
+    return true;
+}
+
 std::shared_ptr<const PosedScene> emptyScene() {
     auto posed = std::make_shared<PosedScene>();
     posed->scene = std::make_shared<const Scene>();
@@ -90,8 +104,9 @@ void Tracer::bind(std::shared_ptr<const PosedScene> posed) {
     if (posed == scene.posed) return;
     // The old scene's data is in use until Embree and the tables have moved on.
     const std::shared_ptr<const PosedScene> earlier = std::exchange(scene.posed, posed);
+    bool attachedAnew = false;
     try {
-        scene.embree.bind(*posed);
+        attachedAnew = scene.embree.bind(*posed);
     } catch (...) {
         // What did not fit leaves nothing behind: an empty scene that can be traced.
         scene.posed = emptyScene();
@@ -99,6 +114,7 @@ void Tracer::bind(std::shared_ptr<const PosedScene> posed) {
         impl_->makeTables();
         throw;
     }
+    if (!attachedAnew && earlier && shadesAlike(*earlier, *posed)) return;
     impl_->makeTables();
     if (earlier && earlier->scene == posed->scene) return;
     parallelFor(static_cast<int64_t>(scene.tables.materials.size()), [&](int64_t i) {
