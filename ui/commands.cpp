@@ -29,13 +29,15 @@ void showBuffer(AppState& state, int index) {
 }
 
 void changeExposure(AppState& state, float byEv) {
-    for (int pane = 0; pane < 2; ++pane) {
+    std::vector<std::pair<std::string, ParameterValue>> values;
+    for (int pane = 0; pane < kViewCount; ++pane) {
         const std::string id = state.viewId(pane, "exposure");
         const ParameterInfo* info = state.document.find(id);
         if (!info) continue;
         const auto low = static_cast<float>(info->min), high = static_cast<float>(info->max);
-        state.set(id, std::clamp(state.document.number(id, 0) + byEv, low, high));
+        values.emplace_back(id, std::clamp(state.document.number(id, 0) + byEv, low, high));
     }
+    state.session.setAll(values);
     state.session.endEdit();
 }
 
@@ -90,39 +92,39 @@ std::string vectorText(const Vec3& v) {
     return fmt::format("{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z);
 }
 
-void runPictureCommand(AppState& state, Command command, int index) {
+void runPictureCommand(AppState& state, UiCommand command, int index) {
     switch (command) {
-        case Command::ShowBuffer:
+        case UiCommand::ShowBuffer:
             showBuffer(state, index);
             break;
-        case Command::PickBuffer:
+        case UiCommand::PickBuffer:
             state.bufferPickerWanted = true;
             break;
-        case Command::NextModule:
+        case UiCommand::NextModule:
             cycleModule(state, 1);
             break;
-        case Command::PreviousModule:
+        case UiCommand::PreviousModule:
             cycleModule(state, -1);
             break;
-        case Command::CycleLayout:
+        case UiCommand::CycleLayout:
             state.setLayout(static_cast<Layout>((static_cast<int>(state.layout()) + 1) % 3));
             break;
-        case Command::SwapPanes:
+        case UiCommand::SwapPanes:
             swapPanes(state);
             break;
-        case Command::ExposureDown:
+        case UiCommand::ExposureDown:
             changeExposure(state, -0.25f);
             break;
-        case Command::ExposureUp:
+        case UiCommand::ExposureUp:
             changeExposure(state, 0.25f);
             break;
-        case Command::Fit:
+        case UiCommand::Fit:
             state.view.fit();
             break;
-        case Command::ActualSize:
+        case UiCommand::ActualSize:
             state.view.setZoom(1);
             break;
-        case Command::Loupe:
+        case UiCommand::Loupe:
             state.loupe = !state.loupe;
             break;
         default:
@@ -130,31 +132,31 @@ void runPictureCommand(AppState& state, Command command, int index) {
     }
 }
 
-void runTimeCommand(AppState& state, Command command) {
+void runTimeCommand(AppState& state, UiCommand command) {
     Session& session = state.session;
     switch (command) {
-        case Command::PlayTime:
+        case UiCommand::PlayTime:
             session.setPlaying(!session.playing());
             break;
-        case Command::PauseRendering:
+        case UiCommand::PauseRendering:
             session.setRendering(!session.rendering());
             break;
-        case Command::Step:
+        case UiCommand::Step:
             session.step();
             break;
-        case Command::StepBack:
+        case UiCommand::StepBack:
             session.stepBack();
             break;
-        case Command::Restart:
+        case UiCommand::Restart:
             session.restart();
             break;
-        case Command::ReloadScene:
+        case UiCommand::ReloadScene:
             session.reload();
             break;
-        case Command::Undo:
+        case UiCommand::Undo:
             session.undo();
             break;
-        case Command::Redo:
+        case UiCommand::Redo:
             session.redo();
             break;
         default:
@@ -162,53 +164,53 @@ void runTimeCommand(AppState& state, Command command) {
     }
 }
 
-void runWindowCommand(AppState& state, Command command, int index) {
+void runWindowCommand(AppState& state, UiCommand command, int index) {
     switch (command) {
-        case Command::ToggleOrbit:
+        case UiCommand::ToggleOrbit:
             state.leftDragOrbits = !state.leftDragOrbits;
             break;
-        case Command::StoreBookmark:
+        case UiCommand::StoreBookmark:
             state.bookmarks()[static_cast<size_t>(index)] = state.document.camera();
             state.log.info(fmt::format("Camera stored as bookmark {}.", index + 1));
             break;
-        case Command::RecallBookmark:
+        case UiCommand::RecallBookmark:
             recallBookmark(state, index);
             break;
-        case Command::CopyCamera:
+        case UiCommand::CopyCamera:
             state.clipboard = cameraAsCommandLine(state.document.camera());
             state.log.info("Camera copied: " + state.clipboard);
             break;
-        case Command::OpenScene:
+        case UiCommand::OpenScene:
             state.browserOpen = !state.browserOpen;
             break;
-        case Command::SavePicture:
+        case UiCommand::SavePicture:
             state.session.saveView(state.activePane, capturePath(state, "png"));
             break;
-        case Command::SaveBuffers:
+        case UiCommand::SaveBuffers:
             state.session.saveView(state.activePane, capturePath(state, "exr"));
             break;
-        case Command::SaveWindow:
+        case UiCommand::SaveWindow:
             state.windowShotWanted = true;
             break;
-        case Command::ResetAll:
+        case UiCommand::ResetAll:
             resetAll(state);
             break;
-        case Command::ToggleUi:
+        case UiCommand::ToggleUi:
             state.uiHidden = !state.uiHidden;
             break;
-        case Command::TogglePanel:
+        case UiCommand::TogglePanel:
             state.panelHidden = !state.panelHidden;
             break;
-        case Command::ToggleMessages:
+        case UiCommand::ToggleMessages:
             state.messagesOpen = !state.messagesOpen;
             break;
-        case Command::Help:
+        case UiCommand::Help:
             state.helpOpen = !state.helpOpen;
             break;
-        case Command::Close:
+        case UiCommand::Close:
             closeTopmost(state);
             break;
-        case Command::Quit:
+        case UiCommand::Quit:
             state.quit = true;
             break;
         default:
@@ -222,15 +224,15 @@ std::string sceneStem(const AppState& state) {
     return name.empty() ? "scene" : name;
 }
 
-bool worksWithoutScene(Command command) {
-    return command == Command::OpenScene || command == Command::Help || command == Command::Close ||
-           command == Command::Quit || command == Command::ToggleUi || command == Command::ToggleMessages ||
-           command == Command::TogglePanel || command == Command::SaveWindow || command == Command::ReloadScene;
+bool worksWithoutScene(UiCommand command) {
+    return command == UiCommand::OpenScene || command == UiCommand::Help || command == UiCommand::Close ||
+           command == UiCommand::Quit || command == UiCommand::ToggleUi || command == UiCommand::ToggleMessages ||
+           command == UiCommand::TogglePanel || command == UiCommand::SaveWindow || command == UiCommand::ReloadScene;
 }
 
 }  // namespace
 
-void runCommand(AppState& state, Command command, int index) {
+void runCommand(AppState& state, UiCommand command, int index) {
     if (!state.document.present() && !worksWithoutScene(command)) return;
     try {
         runPictureCommand(state, command, index);

@@ -5,7 +5,7 @@
 namespace lumi {
 
 /// Carries out what a key or a button asks for.
-void runCommand(AppState& state, Command command, int index = 0);
+void runCommand(AppState& state, UiCommand command, int index = 0);
 
 /// Options that give the present camera on the command line: `--set camera.eye=1,2,3 --set camera.look-at=...`.
 std::string cameraAsCommandLine(const Camera& camera);

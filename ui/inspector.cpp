@@ -52,10 +52,18 @@ void drawValues(const PixelValue& row) {
     ImGui::Dummy(ImVec2(width, at.y + line));
 }
 
+void dimOrAccent(const std::string& text, bool accent) {
+    ImGui::TextColored(toVec4(accent ? palette::kAccent : palette::kDim), "%s", text.c_str());
+}
+
 void drawRow(const PixelValue& row, bool shown) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    smallText(row.buffer, shown ? palette::kAccent : palette::kDim);
+    {
+        const WithFont small(ui().fonts.small);
+        dimOrAccent(shortened(row.buffer, ImGui::GetContentRegionAvail().x), shown);
+    }
+    if (ImGui::IsItemHovered()) tooltip(row.buffer);
     ImGui::TableNextColumn();
     drawValues(row);
 }

@@ -65,10 +65,10 @@ void Interface::dispatch(const FrameInput& input) {
         if (!command) continue;
         const bool typing = ImGui::GetIO().WantTextInput;
         const bool always =
-            command->command == Command::Quit || command->command == Command::Help || chord.key >= Key::F1;
+            command->command == UiCommand::Quit || command->command == UiCommand::Help || chord.key >= Key::F1;
         if (typing && !always) continue;
         const bool popup = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-        if (command->command == Command::Close && popup)
+        if (command->command == UiCommand::Close && popup)
             ImGui::ClosePopupToLevel(0, true);
         else
             runCommand(state_, command->command, command->index);

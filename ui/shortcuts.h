@@ -8,7 +8,7 @@
 namespace lumi {
 
 /// Everything a key or a button can ask for.
-enum class Command {
+enum class UiCommand {
     // Picture
     ShowBuffer,
     PickBuffer,
@@ -58,7 +58,7 @@ enum class Command {
 
 /// One row of the table that both dispatches keys and fills the help overlay.
 struct Shortcut {
-    Command command;
+    UiCommand command;
     KeyChord chord;
     int keys = 1;       ///< so many consecutive keys, counted by the command's index: 1..9
     bool held = false;  ///< acts while it is held (flying), not when it is pressed
@@ -68,14 +68,14 @@ struct Shortcut {
 std::span<const Shortcut> shortcuts();
 
 struct DispatchedCommand {
-    Command command;
+    UiCommand command;
     int index = 0;
 };
 /// What a key stroke asks for. Movement keys, which are held, are not dispatched.
 std::optional<DispatchedCommand> commandFor(const KeyChord& chord);
 
 /// The first key of a command, for tooltips: "F12"; empty if it has none.
-std::string shortcutText(Command command);
+std::string shortcutText(UiCommand command);
 
 /// What the mouse does, for the help overlay.
 struct Gesture {

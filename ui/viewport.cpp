@@ -36,7 +36,8 @@ bool wipeHandle(AppState& state, const ImRect& area) {
     ImGui::InvisibleButton("wipe", ImVec2(px(14), area.GetHeight()));
     markItem("wipe");
     const bool held = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
-    if (held) state.wipe = std::clamp((ImGui::GetIO().MousePos.x - area.Min.x) / area.GetWidth(), 0.0f, 1.0f);
+    if (held || ImGui::IsItemDeactivated())  // the last move and the release may come in one frame
+        state.wipe = std::clamp((ImGui::GetIO().MousePos.x - area.Min.x) / area.GetWidth(), 0.0f, 1.0f);
     if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) state.wipe = 0.5f;
     if (hovered || held) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
 

@@ -11,7 +11,7 @@ namespace {
 constexpr float kRadiansPerPixel = 0.0045f;  ///< design pixels
 constexpr float kClickRadius = 4;            ///< design pixels a click may move
 
-bool held(Command command) {
+bool held(UiCommand command) {
     for (const Shortcut& row : shortcuts())
         if (row.held && row.command == command && ImGui::IsKeyDown(static_cast<int>(row.chord.key))) return true;
     return false;
@@ -28,11 +28,11 @@ bool fly(AppState& state, Camera& camera) {
     const ImGuiIO& io = ImGui::GetIO();
     const bool looking = ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Right);
     if (io.WantTextInput || (io.KeyCtrl && !looking) || io.KeyAlt) return false;
-    const auto axis = [](Command plus, Command minus) {
+    const auto axis = [](UiCommand plus, UiCommand minus) {
         return (held(plus) ? 1.0f : 0.0f) - (held(minus) ? 1.0f : 0.0f);
     };
-    const Vec3 direction(axis(Command::MoveRight, Command::MoveLeft), axis(Command::MoveUp, Command::MoveDown),
-                         axis(Command::MoveForward, Command::MoveBack));
+    const Vec3 direction(axis(UiCommand::MoveRight, UiCommand::MoveLeft), axis(UiCommand::MoveUp, UiCommand::MoveDown),
+                         axis(UiCommand::MoveForward, UiCommand::MoveBack));
     if (direction == Vec3(0)) return false;
     const float modifier = io.KeyShift ? 10.0f : io.KeyCtrl ? 0.25f : 1.0f;
     const float dt = std::min(io.DeltaTime, 0.1f);

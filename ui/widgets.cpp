@@ -104,7 +104,7 @@ int iconSegments(const char* name, std::initializer_list<Icon> icons, std::initi
         else if (hovered)
             list.AddRectFilled(box.Min, box.Max, palette::kHovered, px(4));
         drawIcon(list, icons.begin()[i], box.GetCenter(), px(15), index == chosen ? palette::kOnAccent : palette::kDim);
-        if (hovered) tooltip(tips.begin()[i], "", shortcutText(Command::CycleLayout));
+        if (hovered) tooltip(tips.begin()[i], "", shortcutText(UiCommand::CycleLayout));
     }
     ImGui::PopID();
     return clicked;
@@ -195,7 +195,7 @@ void tooltip(const std::string& title, const std::string& text, const std::strin
     ImGui::PopStyleVar();
 }
 
-std::string tipFor(const char* what, Command command) {
+std::string tipFor(const char* what, UiCommand command) {
     return std::string(what) + "   " + shortcutText(command);
 }
 

@@ -36,7 +36,7 @@ bool section(const char* title, bool openAtFirst = true);
 
 /// Help under the pointer, wrapped. The chord, if any, stands beside the title.
 void tooltip(const std::string& title, const std::string& text = "", const std::string& chord = "");
-std::string tipFor(const char* what, Command command);
+std::string tipFor(const char* what, UiCommand command);
 
 /// A field to search with; true when its text changed.
 bool searchField(const char* name, std::string& text, const char* hint, float width = -1);

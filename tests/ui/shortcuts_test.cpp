@@ -33,19 +33,19 @@ TEST(Shortcuts, everyRowIsDispatchedAsItSays) {
 TEST(Shortcuts, digitsCountTheBuffers) {
     const auto third = commandFor(*parseChord("3"));
     ASSERT_TRUE(third);
-    EXPECT_EQ(third->command, Command::ShowBuffer);
+    EXPECT_EQ(third->command, UiCommand::ShowBuffer);
     EXPECT_EQ(third->index, 2);
     const auto store = commandFor(*parseChord("ctrl+9"));
     ASSERT_TRUE(store);
-    EXPECT_EQ(store->command, Command::StoreBookmark);
+    EXPECT_EQ(store->command, UiCommand::StoreBookmark);
     EXPECT_EQ(store->index, 8);
 }
 
 TEST(Shortcuts, modifiersAreExact) {
     EXPECT_FALSE(commandFor(*parseChord("ctrl+shift+alt+z")));
-    EXPECT_EQ(commandFor(*parseChord("ctrl+z"))->command, Command::Undo);
-    EXPECT_EQ(commandFor(*parseChord("ctrl+shift+z"))->command, Command::Redo);
-    EXPECT_EQ(commandFor(*parseChord("z"))->command, Command::Loupe);
+    EXPECT_EQ(commandFor(*parseChord("ctrl+z"))->command, UiCommand::Undo);
+    EXPECT_EQ(commandFor(*parseChord("ctrl+shift+z"))->command, UiCommand::Redo);
+    EXPECT_EQ(commandFor(*parseChord("z"))->command, UiCommand::Loupe);
 }
 
 TEST(Keys, textGoesBothWays) {

@@ -47,8 +47,8 @@ class Screen:
         self.server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp", "-noreset"],
                                        pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
-        number = os.read(read, 16).decode().strip()
-        os.close(read)
+        with os.fdopen(read) as answer:
+            number = answer.readline().strip()
         assert number, "Xvfb did not start"
         os.environ["DISPLAY"] = ":" + number
         return self
@@ -126,7 +126,8 @@ class Window:
 
     def shot(self, name):
         path = FOLDER / f"{name}.png"
-        subprocess.run(["import", "-window", "root", "-depth", "8", "-define", "png:color-type=2", path], check=True)
+        subprocess.run(["import", "-window", "root", "-depth", "8", "-define", "png:color-type=2",
+                        "-define", "png:compression-filter=0", path], check=True)
         return Picture(path)
 
     def settled_shot(self, name):
@@ -156,33 +157,38 @@ def walk_through(window):
     assert "Cornell" in window.title(), window.title()
     passed("opens with a picture")
 
+    window.key("ctrl+1")
     x, y = window.place("picture")
     window.tool("mousemove", x, y, "mousedown", 3)
-    window.tool("keydown", "w")
+    window.tool("keydown", "s")
     for step in range(10):
         window.tool("mousemove_relative", "--", -6, 0)
         time.sleep(0.06)
-    window.tool("keyup", "w", "mouseup", 3)
-    flown = window.settled_shot("02-flown")
-    assert difference(start, flown, PICTURE) > 4, "the camera flew"
+    window.tool("keyup", "s", "mouseup", 3)
+    away = difference(start, window.settled_shot("02-flown"), PICTURE)
+    assert away > 4, "the camera flew"
+    window.key("alt+1")
+    flown = window.settled_shot("03-back")
+    # The samples are others than at the start: what is left is noise.
+    assert difference(start, flown, PICTURE) < 0.5 * away, "the bookmark brings it back"
     passed("flies with keys and mouse")
 
     window.click("chip:0:buffer")
     window.tool("type", "normal")
     time.sleep(0.5)
     window.key("Return")
-    normal = window.settled_shot("03-normal")
+    normal = window.settled_shot("04-normal")
     assert difference(flown, normal, PICTURE) > 12, "the buffer changed"
     window.key("1")
-    image = window.settled_shot("04-image")
+    image = window.settled_shot("05-image")
     assert difference(flown, image, PICTURE) < 3, "key 1 shows the image again"
     passed("changes the buffer by search and by key")
 
     window.click("view.0.exposure", across=0.62)
-    brighter = window.settled_shot("05-exposure")
+    brighter = window.settled_shot("06-exposure")
     assert brighter.mean(PICTURE) > 1.2 * image.mean(PICTURE), "a click on the slider brightens the picture"
     window.click("reset:view.0.exposure")
-    assert difference(window.settled_shot("06-reset"), image, PICTURE) < 3, "reset takes it back"
+    assert difference(window.settled_shot("07-reset"), image, PICTURE) < 3, "reset takes it back"
     passed("changes a parameter by clicking, and resets it")
 
     window.click("layout:Wipe")
@@ -191,9 +197,9 @@ def walk_through(window):
     time.sleep(0.5)
     window.key("Return")
     before = window.items()["wipe"]["x"]
-    window.settled_shot("07-wipe")
     window.drag("wipe", -220)
-    wiped = window.settled_shot("08-wiped")
+    time.sleep(2)  # the raw frame's depth is drawn anew with every frame: there is no rest to wait for
+    wiped = window.shot("08-wiped")
     moved = window.items()["wipe"]["x"] - before
     assert abs(moved + 220) < 8, f"the wipe moved by {moved}"
     assert difference(wiped, image, (480, 200, 700, 640)) > 12, "right of the wipe is the depth"
@@ -216,7 +222,8 @@ def walk_through(window):
     (FOLDER / "dropped.mtl").write_text("newmtl glow\nKd 0 0 0\nKe 1 0.2 0.1\n")
     subprocess.run([sys.executable, HERE / "xdnd_source.py", window.id, str(x), str(y), dropped], check=True)
     window.until("the dropped scene", lambda: window.title().startswith("dropped"))
-    after = window.settled_shot("10-dropped")
+    time.sleep(3)
+    after = window.shot("10-dropped")
     assert difference(after, wiped, PICTURE) > 5, "the dropped scene is on the screen"
     passed("opens a dropped file")
 

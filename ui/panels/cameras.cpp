@@ -35,7 +35,7 @@ void drawBookmarks(AppState& state) {
         const bool stored = state.bookmarks()[static_cast<size_t>(i)].has_value();
         ImGui::PushID(i);
         if (ImGui::InvisibleButton("bookmark", ImVec2(each, px(26))))
-            runCommand(state, stored ? Command::RecallBookmark : Command::StoreBookmark, i);
+            runCommand(state, stored ? UiCommand::RecallBookmark : UiCommand::StoreBookmark, i);
         markItem(fmt::format("bookmark:{}", i + 1));
         const ImRect box(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
         ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -62,8 +62,8 @@ void drawCameras(AppState& state) {
     drawBookmarks(state);
     ImGui::Dummy(ImVec2(0, px(2)));
     const Icon copy = Icon::Camera;
-    if (textButton("copy-camera", "Copy as command line", &copy)) runCommand(state, Command::CopyCamera);
-    if (ImGui::IsItemHovered()) tooltip(tipFor("Copies --set camera.eye=… to the clipboard", Command::CopyCamera));
+    if (textButton("copy-camera", "Copy as command line", &copy)) runCommand(state, UiCommand::CopyCamera);
+    if (ImGui::IsItemHovered()) tooltip(tipFor("Copies --set camera.eye=… to the clipboard", UiCommand::CopyCamera));
 }
 
 }  // namespace lumi

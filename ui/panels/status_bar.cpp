@@ -40,7 +40,8 @@ void drawStatusRow(AppState& state, const ImRect& area) {
 
     const float width = area.GetWidth() - (roomForBoth ? rightWidth + px(40) : 0);
     ImGui::SetCursorScreenPos(area.Min);
-    if (ImGui::InvisibleButton("messages", ImVec2(width, area.GetHeight()))) runCommand(state, Command::ToggleMessages);
+    if (ImGui::InvisibleButton("messages", ImVec2(width, area.GetHeight())))
+        runCommand(state, UiCommand::ToggleMessages);
     markItem("messages");
     const bool hovered = ImGui::IsItemHovered();
     const std::vector<Message> messages = state.log.messages();
@@ -54,7 +55,8 @@ void drawStatusRow(AppState& state, const ImRect& area) {
     const std::string text = elided(firstLine(last.text), width - px(60));
     list.AddText(ImVec2(area.Min.x + px(34), y), hovered ? palette::kText : palette::kDim, text.c_str());
     if (hovered)
-        tooltip(state.messagesOpen ? "Hide messages" : "Show all messages", "", shortcutText(Command::ToggleMessages));
+        tooltip(state.messagesOpen ? "Hide messages" : "Show all messages", "",
+                shortcutText(UiCommand::ToggleMessages));
 }
 
 }  // namespace

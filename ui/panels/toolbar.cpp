@@ -24,22 +24,22 @@ void drawSceneButton(AppState& state, const ImRect& area, float width) {
     list.AddText(ImVec2(box.Min.x + px(10), std::floor(box.GetCenter().y - 0.5f * ImGui::GetFontSize())),
                  palette::kText, name.c_str());
     drawIcon(list, Icon::Chevron, ImVec2(box.Max.x - px(15), box.GetCenter().y), px(10), palette::kDim);
-    if (ImGui::IsItemHovered()) tooltip(tipFor("Open a scene", Command::OpenScene));
-    if (clicked) runCommand(state, Command::OpenScene);
+    if (ImGui::IsItemHovered()) tooltip(tipFor("Open a scene", UiCommand::OpenScene));
+    if (clicked) runCommand(state, UiCommand::OpenScene);
 }
 
 void drawTransport(AppState& state, const ImRect& area) {
-    const auto button = [&](const char* name, Icon icon, const char* what, Command command, bool on = false) {
+    const auto button = [&](const char* name, Icon icon, const char* what, UiCommand command, bool on = false) {
         ImGui::SameLine(0, px(1));
         centreNext(area, px(28));
         if (iconButton(name, icon, tipFor(what, command), on)) runCommand(state, command);
     };
-    button("restart", Icon::Restart, "Restart at frame 0", Command::Restart);
-    button("step-back", Icon::StepBack, "One frame back", Command::StepBack);
+    button("restart", Icon::Restart, "Restart at frame 0", UiCommand::Restart);
+    button("step-back", Icon::StepBack, "One frame back", UiCommand::StepBack);
     const bool playing = state.session.playing();
-    button("play", playing ? Icon::Pause : Icon::Play, playing ? "Pause time" : "Play time", Command::PlayTime,
+    button("play", playing ? Icon::Pause : Icon::Play, playing ? "Pause time" : "Play time", UiCommand::PlayTime,
            playing);
-    button("step", Icon::Step, "One frame forward", Command::Step);
+    button("step", Icon::Step, "One frame forward", UiCommand::Step);
     if (state.snapshot) {
         ImGui::SameLine(0, px(8));
         const WithFont mono(ui().fonts.mono);
@@ -100,16 +100,16 @@ void drawToolbar(AppState& state, const ImRect& area) {
         if (clicked >= 0) state.setLayout(static_cast<Layout>(clicked));
     }
     x = right - 3 * icons;
-    const auto button = [&](const char* name, Icon icon, const char* what, Command command, bool on) {
+    const auto button = [&](const char* name, Icon icon, const char* what, UiCommand command, bool on) {
         ImGui::SetCursorScreenPos(ImVec2(area.Min.x + x, area.Min.y + 0.5f * (area.GetHeight() - px(28))));
         if (iconButton(name, icon, tipFor(what, command), on)) runCommand(state, command);
         x += icons;
     };
     const bool rendering = state.session.rendering();
     button("pause-rendering", rendering ? Icon::Pause : Icon::Play, rendering ? "Pause rendering" : "Resume rendering",
-           Command::PauseRendering, !rendering);
-    button("screenshot", Icon::Camera, "Save the view as PNG", Command::SavePicture, false);
-    button("help", Icon::Help, "Keys and mouse", Command::Help, state.helpOpen);
+           UiCommand::PauseRendering, !rendering);
+    button("screenshot", Icon::Camera, "Save the view as PNG", UiCommand::SavePicture, false);
+    button("help", Icon::Help, "Keys and mouse", UiCommand::Help, state.helpOpen);
     ImGui::GetWindowDrawList()->AddLine(ImVec2(area.Min.x, area.Max.y - 0.5f), ImVec2(area.Max.x, area.Max.y - 0.5f),
                                         palette::kBorder);
     endFixed();

@@ -41,11 +41,11 @@ void drawZoom(AppState& state) {
     const float zoom = state.view.zoom();
     smallText(zoom >= 1 ? fmt::format("Zoom {:.4g} : 1", zoom) : fmt::format("Zoom 1 : {:.3g}", 1 / zoom));
     ImGui::SameLine(ImGui::GetContentRegionMax().x - px(76));
-    if (iconButton("fit", Icon::Fit, tipFor("Fit the picture", Command::Fit), state.view.fits(), 24))
-        runCommand(state, Command::Fit);
+    if (iconButton("fit", Icon::Fit, tipFor("Fit the picture", UiCommand::Fit), state.view.fits(), 24))
+        runCommand(state, UiCommand::Fit);
     ImGui::SameLine(0, px(4));
-    if (iconButton("loupe", Icon::Loupe, tipFor("Loupe under the pointer", Command::Loupe), state.loupe, 24))
-        runCommand(state, Command::Loupe);
+    if (iconButton("loupe", Icon::Loupe, tipFor("Loupe under the pointer", UiCommand::Loupe), state.loupe, 24))
+        runCommand(state, UiCommand::Loupe);
 }
 
 }  // namespace
