@@ -3,6 +3,7 @@
     offscreen_test.py LUMISCOPE FOLDER
 """
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -181,6 +182,33 @@ def test_same_script_gives_same_bytes():
     first, _ = view("bytes-1", script)
     second, _ = view("bytes-2", script)
     assert (first / "picture.png").read_bytes() == (second / "picture.png").read_bytes()
+
+
+def test_ui_thread_stays_quick_while_sponza_renders():
+    assets = pathlib.Path(os.environ.get("LUMISCOPE_ASSETS", pathlib.Path(__file__).parents[3] / "shared" / "assets"))
+    sponza = assets / "gltf" / "Sponza" / "Sponza.gltf"
+    if not sponza.exists():
+        print("        no Sponza here: " + str(sponza))
+        return
+    _, report = view("sponza", """
+wait-load
+mouse 500 400
+wait-frames 2
+click tab:Scene
+click section:Materials
+pause 100
+click tab:Render
+pause 100
+click tab:Profile
+click tab:View
+hold w
+pause 60
+lift w
+wait-frames 2
+shot sponza
+""", scene=str(sponza), options=[])
+    print(f"        Sponza: first image after {report['first_image_s']:.1f} s, UI thread {report['ui_ms']}")
+    assert report["ui_ms"]["p99"] < 8, report["ui_ms"]
 
 
 def test_mistakes_are_named():

@@ -36,11 +36,29 @@ std::string chordText(const Shortcut& shortcut) {
     return text;
 }
 
+/// The keys that are held, from row `first` on, in one line: "W A S D", "Fly forward, left, back, right". Returns the
+/// last of them.
+size_t heldRow(size_t first, float width) {
+    const std::span<const Shortcut> table = shortcuts();
+    std::string keys, text = "Fly ";
+    size_t i = first;
+    for (; i < table.size() && table[i].held; ++i) {
+        keys += (i > first ? " " : "") + chordText(table[i]);
+        text += (i > first ? ", " : "") + std::string(table[i].text);
+    }
+    row(width, keys, text.c_str());
+    return i - 1;
+}
+
 void drawGroup(const char* group, float width) {
     heading(group);
     const std::span<const Shortcut> table = shortcuts();
     for (size_t i = 0; i < table.size(); ++i) {
         if (std::string(table[i].group) != group) continue;
+        if (table[i].held) {
+            i = heldRow(i, width);
+            continue;
+        }
         std::string keys = chordText(table[i]);
         if (i + 1 < table.size() && table[i + 1].command == table[i].command) {
             ++i;
@@ -61,7 +79,7 @@ void drawHelp(AppState& state, const ImRect& area) {
     ImGui::SetNextWindowFocus();
     const bool twoColumns = area.GetWidth() >= px(860);
     const ImVec2 size(std::min(px(twoColumns ? 900 : 460), area.GetWidth() - px(24)),
-                      std::min(px(770), area.GetHeight() - px(24)));
+                      std::min(px(730), area.GetHeight() - px(24)));
     const ImVec2 corner(std::floor(area.GetCenter().x - 0.5f * size.x), std::floor(area.GetCenter().y - 0.5f * size.y));
     ImGui::SetNextWindowPos(corner);
     ImGui::SetNextWindowSize(size);
