@@ -22,7 +22,7 @@ CameraPose atOrigin(CameraPose camera) {
 Vec3 surfaceMotion(const CameraPose& camera, const CameraPose& previousCamera, const Vec3& position,
                    const Vec3& previousPosition) {
     const Vec3 before = previousCamera.project(previousPosition);
-    if (previousCamera.projection == Projection::Perspective && !(before.z > 0)) return Vec3(0);
+    if (previousCamera.projection == Projection::Perspective && !(before.z > 0)) return kNoPreviousPixel;
     return finiteOrZero(before - camera.project(position));
 }
 
@@ -33,7 +33,7 @@ Vec3 skyMotion(const CameraPose& camera, const CameraPose& previousCamera, const
     // Only rotation moves what is infinitely far.
     const Vec3 now = atOrigin(camera).project(direction);
     const Vec3 before = atOrigin(previousCamera).project(direction);
-    if (!(before.z > 0) || !(now.z > 0)) return Vec3(0);
+    if (!(before.z > 0) || !(now.z > 0)) return kNoPreviousPixel;
     return finiteOrZero(Vec3(before.x - now.x, before.y - now.y, 0));
 }
 

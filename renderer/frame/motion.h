@@ -3,9 +3,13 @@
 
 namespace lumi {
 
+/// Motion of a point that has no previous pixel, since it was behind the previous camera: far off any image, so that
+/// whoever follows it finds no history. (0, 0) would mean "has not moved".
+inline const Vec3 kNoPreviousPixel{-1e6f, -1e6f, 0};
+
 /// Where a surface point was on the previous frame's screen, as Signal::Motion stores it: (x, y) previous minus current
 /// pixel, z previous minus current linear view depth in metres. Jitter plays no part: both are projections of world
-/// points. A point that was behind or in the plane of the previous camera has no previous pixel and gets motion 0.
+/// points. A point that was behind or in the plane of the previous camera gets kNoPreviousPixel.
 Vec3 surfaceMotion(const CameraPose& camera, const CameraPose& previousCamera, const Vec3& position,
                    const Vec3& previousPosition);
 

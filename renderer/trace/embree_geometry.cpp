@@ -2,25 +2,10 @@
 #include <cstring>
 
 #include "math/hash.h"
+#include "trace/coverage.h"
 #include "trace/embree_parts.h"
 
 namespace lumi {
-namespace {
-
-/// Coverage of a surface point: the material's alpha, its texture's and the vertices'.
-float alphaAt(const Material& material, const Mesh& mesh, uint32_t primitive, float u, float v) {
-    const UVec3 t = mesh.triangles[primitive];
-    float alpha = material.alpha;
-    if (!mesh.colours.empty())
-        alpha *= mesh.colours[t.x].w * (1 - u - v) + mesh.colours[t.y].w * u + mesh.colours[t.z].w * v;
-    if (const Texture& texture = material.baseColorTexture) {
-        const auto& uv = mesh.uv[texture.uvSet == 1 ? 1 : 0];
-        if (!uv.empty()) alpha *= texture.sampleAlpha(uv[t.x] * (1 - u - v) + uv[t.y] * u + uv[t.z] * v);
-    }
-    return alpha;
-}
-
-}  // namespace
 
 RTCScene EmbreeScene::newScene() const {
     RTCScene scene = rtcNewScene(device_);
@@ -87,8 +72,11 @@ void EmbreeScene::filter(const RTCFilterFunctionNArguments* arguments) {
         const uint32_t primitive = RTCHitN_primID(arguments->hit, n, i);
         const Material& material = posed.material(instance, primitive);
         if (material.alphaMode == AlphaMode::Opaque) continue;
-        const float alpha = alphaAt(material, posed.mesh(instance), primitive, RTCHitN_u(arguments->hit, n, i),
-                                    RTCHitN_v(arguments->hit, n, i));
+        const Mesh& mesh = posed.mesh(instance);
+        const auto data = [](const auto& values) { return values.empty() ? nullptr : values.data(); };
+        const Vec2* const uv[2] = {data(mesh.uv[0]), data(mesh.uv[1])};
+        const float alpha = alphaAt(material, mesh.triangles[primitive], data(mesh.colours), uv,
+                                    {RTCHitN_u(arguments->hit, n, i), RTCHitN_v(arguments->hit, n, i)});
         const float least = material.alphaMode == AlphaMode::Mask
                                 ? material.alphaCutoff
                                 : unitFloat(hashCombine(RTCRayN_id(arguments->ray, n, i), instance, primitive));

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "trace/coverage.h"
 #include "trace/surface_material.h"
 
 namespace lumi {
@@ -238,7 +239,11 @@ Vec3 previousSurfacePosition(const SceneTables& tables, const PosedScene& posed,
 
 Vec3 triangleEmission(const SceneTables& tables, uint32_t instance, uint32_t primitive, Vec2 barycentrics) {
     const InstanceRecord& r = tables.instances[instance];
-    return emissionAt(tables.materials[r.materialOf(primitive)], r, r.triangles[primitive], barycentrics);
+    const MaterialRecord& material = tables.materials[r.materialOf(primitive)];
+    const UVec3& corners = r.triangles[primitive];
+    const Vec3 emission = emissionAt(material, r, corners, barycentrics);
+    if (!material.source->hasAlpha()) return emission;
+    return emission * coverage(*material.source, alphaAt(*material.source, corners, r.colours, r.uv, barycentrics));
 }
 
 Vec3 offsetOrigin(const Vec3& position, const Vec3& normal, float extra) {
