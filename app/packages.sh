@@ -4,11 +4,11 @@
 build_packages=(
     g++ cmake ninja-build ccache pkg-config
     libembree-dev libosd-dev libtinygltf-dev libtinyobjloader-dev libopenexr-dev libpng-dev libstb-dev
-    libglfw3-dev libimgui-dev libegl-dev libgl-dev libosmesa6-dev libgl1-mesa-dri libegl-mesa0 libglx-mesa0
+    libglfw3-dev libimgui-dev libfreetype-dev libegl-dev libgl-dev libosmesa6-dev libgl1-mesa-dri libegl-mesa0 libglx-mesa0
     libtbb-dev libglm-dev rapidjson-dev nlohmann-json3-dev libcli11-dev libfmt-dev libxxhash-dev
     libdraco-dev libmeshoptimizer-dev
     libgtest-dev
-    fonts-inter fonts-jetbrains-mono fonts-font-awesome ffmpeg
+    fonts-inter fonts-jetbrains-mono ffmpeg
 )
 test_packages=(
     python3 python3-xlib python3-jsonschema xvfb xauth xdotool x11-utils imagemagick git

@@ -8,6 +8,17 @@
 namespace lumi {
 namespace {
 
+/// Names and values come from files: whatever they hold, a message stays one line.
+std::string oneLine(const std::string& text) {
+    std::string line;
+    for (const char c : text) {
+        if (c == '\n') line += "\\n";
+        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) line += ' ';
+        else line += c;
+    }
+    return line;
+}
+
 std::string sentence(const ErrorText& text) {
     std::string line;
     if (!text.where.empty()) line += text.where + ": ";
@@ -20,7 +31,7 @@ std::string sentence(const ErrorText& text) {
 }  // namespace
 
 Error::Error(ErrorKind kind, ErrorText text)
-    : std::runtime_error(sentence(text)), kind_(kind), text_(std::move(text)) {}
+    : std::runtime_error(oneLine(sentence(text))), kind_(kind), text_(std::move(text)) {}
 
 void throwBadInput(ErrorText text) { throw Error(ErrorKind::BadInput, std::move(text)); }
 void throwUsage(ErrorText text) { throw Error(ErrorKind::Usage, std::move(text)); }

@@ -19,6 +19,10 @@ TEST(Errors, TextSaysWhereWhatExpectedAndFound) {
     EXPECT_EQ(full.text().expected, "1 to 8");
 }
 
+TEST(Errors, TextIsOneLineWhateverAFileHolds) {
+    EXPECT_STREQ(Error(ErrorKind::BadInput, {"unknown key \"a\nb\tc\"", "", "", ""}).what(), "unknown key \"a\\nb c\"");
+}
+
 TEST(Errors, ExitCodesAreTheContract) {
     const std::pair<ErrorKind, int> codes[] = {{ErrorKind::CheckFailed, 1}, {ErrorKind::Usage, 2},
                                                {ErrorKind::BadInput, 3},    {ErrorKind::NoDisplay, 4},
