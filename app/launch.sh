@@ -18,7 +18,7 @@ install_packages "${build_packages[@]}"
 log=$source_dir/build/launch.log
 mkdir -p "$source_dir/build"
 echo "Building into $build_dir (the first time takes a few minutes) ..." >&2
-if ! (cmake -S "$source_dir" -B "$build_dir" -G Ninja -DCMAKE_BUILD_TYPE=Release -DLUMISCOPE_TESTS=OFF &&
+if ! (cmake -S "$source_dir" -B "$build_dir" -G Ninja -DCMAKE_BUILD_TYPE=Release &&
       cmake --build "$build_dir" --target lumiscope -j"$(nproc)") >"$log" 2>&1; then
     tail -n 40 "$log" >&2
     echo "The build failed; the whole log is $log" >&2
