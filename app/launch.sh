@@ -43,6 +43,6 @@ name=$(basename "$scene"); name=${name%.*}
 mkdir -p "$pictures"
 echo "No window: $reason. Rendering \"$scene\" headless instead ..." >&2
 rm -f "$pictures/$name.png" "$pictures/$name.exr"
-"$program" render "$scene" --size 960x540 --spp 64 --out "$pictures/$name.png" --out "$pictures/$name.exr" "$@"
+"$program" render "$scene" --size 640x360 --spp 64 --out "$pictures/$name.png" --out "$pictures/$name.exr" "$@"
 echo "Wrote $pictures/$name.png and $pictures/$name.exr (all settings are inside: lumiscope render --replay FILE)." >&2
 echo "The workbench itself, drawn without a display: $program view $scene --offscreen --out $pictures" >&2
