@@ -88,6 +88,8 @@ void append(Mesh& mesh, const Mesh& part, uint32_t slot, const Mat4& place) {
         else
             mesh.colours.insert(mesh.colours.end(), part.colours.begin(), part.colours.end());
     }
+    // A mesh of one material names it once; from here on each triangle names its own.
+    mesh.triangleMaterial.resize(mesh.triangles.size(), mesh.material);
     for (size_t t = 0; t < part.triangles.size(); ++t) {
         const UVec3 v = part.triangles[t] + base;
         mesh.triangles.push_back(mirrored ? UVec3(v.x, v.z, v.y) : v);
