@@ -1,0 +1,38 @@
+#include "session/reference_spec.h"
+
+#include <nlohmann/json.hpp>
+
+namespace lumi {
+namespace {
+
+/// Edits of the scene itself; camera, time, path and size stand in the spec as what they come to.
+bool editsScene(const std::string& id) {
+    for (const char* head : {"material.", "light.", "environment.", "scene."})
+        if (id.compare(0, std::char_traits<char>::length(head), head) == 0) return true;
+    return false;
+}
+
+}  // namespace
+
+ReferenceSpec referenceSpec(const Document& document) {
+    ReferenceSpec spec;
+    spec.scene = document.scene();
+    nlohmann::json edits = nlohmann::json::object();
+    const nlohmann::json changed = document.changedValues();
+    for (const auto& [id, value] : changed.items())
+        if (editsScene(id) && id != "environment.file") edits[id] = value;
+    if (!document.environmentDigest().empty()) edits[Document::kEnvironmentDigest] = document.environmentDigest();
+    spec.sceneKey = nlohmann::json{{"digest", document.loadedScene()->contentDigest},
+                                   {"index", document.sceneIndex()},
+                                   {"variant", document.sceneVariant()},
+                                   {"edits", edits}}
+                        .dump();
+    spec.time = document.time();
+    spec.camera = poseCamera(document.camera(), {document.render().width, document.render().height});
+    spec.path = document.path();
+    spec.seed = static_cast<uint32_t>(document.render().seed);
+    spec.jitter = document.jitter() == Jitter::Auto ? Jitter::PerPixel : document.jitter();
+    return spec;
+}
+
+}  // namespace lumi
