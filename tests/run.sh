@@ -31,8 +31,6 @@ if [ "${1:-}" != --quick ]; then
     # Embree and Mesa keep allocations of their own until the process ends.
     export LSAN_OPTIONS=suppressions=$source_dir/tests/sanitizers/lsan.supp:print_suppressions=0
     export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=detect_stack_use_after_return=1
-    # OpenSubdiv's own irregular patches read past their arrays on some of the cages (Vtr::internal::Level::findEdge).
-    export GTEST_FILTER='-Subdivision.*'
     pattern="^(${sanitized// /|})\$"
     ctest --test-dir build/asan-ubsan --output-on-failure --timeout 900 -R "$pattern" -j1
 fi

@@ -7,6 +7,7 @@
 #include <opensubdiv/bfr/tessellation.h>
 #include <opensubdiv/far/topologyDescriptor.h>
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <shared_mutex>
@@ -15,6 +16,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "scene/subdivision_folds.h"
 #include "scene/subdivision_topology.h"
 
 namespace lumi {
@@ -157,15 +159,12 @@ void findShared(const Far::TopologyLevel& level, const Factory& factory, int rat
     }
 }
 
-}  // namespace
-
-SubdivisionSurface tessellate(const SubdivisionCage& cage, int rate, const std::string& where) {
-    if (rate < 1 || rate > 64)
-        throwBadInput({"the tessellation rate is out of range", where, "1 to 64", fmt::format("{}", rate)});
-    const std::unique_ptr<Far::TopologyRefiner> refiner = makeRefiner(cage, where);
+SubdivisionSurface tessellateFaces(const SubdivisionCage& cage, const Far::TopologyRefiner& refiner, int rate,
+                                   bool shareTopology, const std::string& where) {
     Factory::Options options;
     options.SetDefaultFVarID(cage.uvs.empty() ? -1 : 0);
-    const Factory factory(*refiner, options);
+    options.EnableCaching(shareTopology);
+    const Factory factory(refiner, options);
     const auto faceCount = static_cast<int>(cage.faceSizes.size());
     std::vector<FaceSpan> spans = planFaces(factory, faceCount, rate, where);
 
@@ -188,7 +187,81 @@ SubdivisionSurface tessellate(const SubdivisionCage& cage, int rate, const std::
                 tessellator.run(static_cast<int>(face), spans[static_cast<size_t>(face)], rows, out);
     });
     gatherRows(spans, rows, out);
-    findShared(refiner->GetLevel(0), factory, rate, spans, out);
+    findShared(refiner.GetLevel(0), factory, rate, spans, out);
+    return out;
+}
+
+/// Rows over the refined cage become rows over the coarse one.
+void composeRows(const std::vector<RefinedCage::Row>& vertices, SubdivisionSurface& out) {
+    struct Sums {
+        float weight = 0, u = 0, v = 0;
+    };
+    const SubdivisionSurface fine = std::move(out);
+    out = {};
+    out.first.assign(1, 0);
+    for (size_t row = 0; row + 1 < fine.first.size(); ++row) {
+        std::map<uint32_t, Sums> sums;
+        for (uint32_t k = fine.first[row]; k < fine.first[row + 1]; ++k)
+            for (const auto& [vertex, weight] : vertices[fine.cageVertex[k]].weights) {
+                Sums& sum = sums[vertex];
+                sum.weight += weight * fine.weight[k];
+                sum.u += weight * fine.tangentU[k];
+                sum.v += weight * fine.tangentV[k];
+            }
+        for (const auto& [vertex, sum] : sums) {
+            out.cageVertex.push_back(vertex);
+            out.weight.push_back(sum.weight);
+            out.tangentU.push_back(sum.u);
+            out.tangentV.push_back(sum.v);
+        }
+        out.first.push_back(static_cast<uint32_t>(out.weight.size()));
+    }
+    out.mesh = fine.mesh;
+    out.triangleFace = fine.triangleFace;
+    out.faceCoordinates = fine.faceCoordinates;
+    out.shared = fine.shared;
+}
+
+/// A child's (u, v) in its parent's parameterisation: a quarter of a quad, its corners in the quad's own order; of any
+/// other face child i is the sub-face whose origin is corner i.
+Vec2 parentCoordinates(const RefinedCage& refined, uint32_t face, const Vec2& uv) {
+    const uint32_t child = refined.childOfFace[face], size = refined.parentSize[face];
+    if (size == 4) {
+        constexpr float kOrigin[4][2] = {{0, 0}, {0.5f, 0}, {0.5f, 0.5f}, {0, 0.5f}};
+        return Vec2(kOrigin[child][0], kOrigin[child][1]) + 0.5f * uv;
+    }
+    const Bfr::Parameterization parent(OpenSubdiv::Sdc::SCHEME_CATMARK, static_cast<int>(size));
+    Vec2 result;
+    parent.ConvertNormalizedSubFaceToCoord(static_cast<int>(child), &uv.x, &result.x);
+    return result;
+}
+
+SubdivisionSurface tessellateRefined(const SubdivisionCage& cage, int rate, const std::string& where) {
+    const RefinedCage refined = refineOnce(cage, where);
+    const auto refiner = makeRefiner(refined.cage, where);
+    SubdivisionSurface out = tessellateFaces(refined.cage, *refiner, (rate + 1) / 2, false, where);
+    std::vector<bool> isDone(out.faceCoordinates.size(), false);
+    for (size_t t = 0; t < out.triangleFace.size(); ++t) {
+        for (int corner = 0; corner < 3; ++corner) {
+            const uint32_t vertex = out.mesh.triangles[t][corner];
+            if (isDone[vertex]) continue;
+            isDone[vertex] = true;
+            out.faceCoordinates[vertex] = parentCoordinates(refined, out.triangleFace[t], out.faceCoordinates[vertex]);
+        }
+        out.triangleFace[t] = refined.parentFace[out.triangleFace[t]];
+    }
+    composeRows(refined.vertices, out);
+    return out;
+}
+
+}  // namespace
+
+SubdivisionSurface tessellate(const SubdivisionCage& cage, int rate, const std::string& where) {
+    if (rate < 1 || rate > 64)
+        throwBadInput({"the tessellation rate is out of range", where, "1 to 64", fmt::format("{}", rate)});
+    const std::unique_ptr<Far::TopologyRefiner> refiner = makeRefiner(cage, where);
+    SubdivisionSurface out = hasFolds(refiner->GetLevel(0)) ? tessellateRefined(cage, rate, where)
+                                                            : tessellateFaces(cage, *refiner, rate, true, where);
     out.evaluate(cage.positions, out.mesh.positions, out.mesh.normals);
     return out;
 }
