@@ -69,6 +69,7 @@ public:
         addWindow();
         addRender();
         addCompare();
+        addBench();
         addInfo();
         addList();
         addView();
@@ -157,6 +158,14 @@ private:
         app->footer(compareFooter());
     }
 
+    void addBench() {
+        CLI::App* app = bench_ = app_.add_subcommand("bench", "Measure this machine's speed against bare Embree");
+        app->add_option("--filter", line_.filter, "Only entries in whose name this regular expression is found")
+            ->type_name("RE")->take_last();
+        addMachine(*app, line_.machine, true);
+        app->footer(benchFooter);
+    }
+
     void addInfo() {
         CLI::App* app = info_ = app_.add_subcommand("info", "Tell what a scene holds, and every warning");
         app->add_option("scene", infoScene_, "Scene to read: a name or a path")->required()->type_name("SCENE");
@@ -199,6 +208,7 @@ private:
     CommandLine finished() {
         if (render_->parsed()) finishRender();
         else if (compare_->parsed()) finishCompare();
+        else if (bench_->parsed()) line_.command = Command::Bench;
         else if (info_->parsed()) finishInfo();
         else if (list_->parsed()) line_.command = Command::List;
         else if (view_->parsed()) finishView();
@@ -260,7 +270,7 @@ private:
     }
 
     CLI::App app_;
-    CLI::App *render_ = nullptr, *compare_ = nullptr, *info_ = nullptr, *list_ = nullptr, *view_ = nullptr;
+    CLI::App *render_ = nullptr, *compare_ = nullptr, *bench_ = nullptr, *info_ = nullptr, *list_ = nullptr, *view_ = nullptr;
     CommandLine line_;
     SharedText windowText_, renderText_, infoText_, viewText_;
     SceneOptions viewScene_;

@@ -50,7 +50,7 @@ struct ListOptions {
     std::string module;  ///< only what belongs to it
 };
 
-enum class Command { Window, Render, Compare, Info, List, View, PrintAndExit };
+enum class Command { Window, Render, Compare, Bench, Info, List, View, PrintAndExit };
 
 struct CommandLine {
     Command command = Command::Window;
@@ -59,6 +59,7 @@ struct CommandLine {
     CompareOptions compare; ///< Compare
     SceneOptions scene;     ///< Window, Info, View
     bool check = false;     ///< Info
+    std::string filter;     ///< Bench: regular expression over names
     ListOptions list;       ///< List
     ViewOptions view;       ///< View: script, out, samples, size; View and Window fill `start` from `scene`
     std::filesystem::path uiMap, captures;  ///< Window

@@ -8,6 +8,7 @@ const char* versionText();
 /// What stands below the options: examples, what there is to choose from, exit codes.
 std::string mainFooter();
 std::string renderFooter();
+std::string benchFooter();
 std::string compareFooter();
 
 }  // namespace lumi

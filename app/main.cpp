@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "app/bench_command.h"
 #include "app/cli.h"
 #include "app/commands.h"
 #include "app/view.h"
@@ -83,6 +84,10 @@ int runCommand(const CommandLine& line) {
         case Command::Render: {
             InterruptGuard interrupt;
             return runRender(line.render, line.machine, log, interrupt.token());
+        }
+        case Command::Bench: {
+            InterruptGuard interrupt;
+            return runBenchCommand(line.filter, line.machine, log, interrupt.token());
         }
         case Command::Info: {
             InterruptGuard interrupt;

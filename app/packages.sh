@@ -12,6 +12,7 @@ build_packages=(
 )
 test_packages=(
     python3 python3-xlib python3-jsonschema xvfb xauth xdotool x11-utils imagemagick git
+    embree-tools
 )
 
 install_packages() {

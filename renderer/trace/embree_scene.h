@@ -8,6 +8,8 @@
 
 namespace lumi {
 
+class RayRecorder;
+
 /// The Embree side of a posed scene. The top-level scene's geometry ids are instance indices:
 ///   rigid meshes that are placed once and never move: world-space triangles of the top level;
 ///   meshes that are shared or move: Embree instances of a scene a mesh, built once;
@@ -37,6 +39,10 @@ public:
     int packetWidth() const { return packetWidth_; }
     size_t byteCount() const;
 
+    /// Every ray traced from now on goes to `recorder` too; null: to none.
+    void record(RayRecorder* recorder) { recorder_ = recorder; }
+    RayRecorder* recorder() const { return recorder_; }
+
 private:
     enum class Mode : uint8_t { None, Direct, Instanced, Deforming, Body, MovingBody };
     struct Plan;
@@ -60,6 +66,7 @@ private:
     RTCScene top_ = nullptr;
     int packetWidth_ = 1;
     const PosedScene* posed_ = nullptr;
+    RayRecorder* recorder_ = nullptr;
     std::unique_ptr<Monitor> monitor_;
     std::vector<Plan> plans_;
     std::vector<Attachment> attachments_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "trace/ray_recorder.h"
+
 namespace lumi {
 namespace {
 
@@ -107,6 +109,7 @@ void occludedPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<u
 void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits,
                    Coherence coherence) {
     assert(hits.size() >= rays.size());
+    if (RayRecorder* recorder = scene.recorder()) recorder->add(false, coherence, rays);
     RTCIntersectContext context = makeContext();
     const int width = coherence == Coherence::Coherent ? scene.packetWidth() : 1;
     if (width == 16) return intersectPackets<16>(scene.handle(), rays, hits, context);
@@ -127,6 +130,7 @@ void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std
 void occludedRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked,
                   Coherence coherence) {
     assert(blocked.size() >= rays.size());
+    if (RayRecorder* recorder = scene.recorder()) recorder->add(true, coherence, rays);
     RTCIntersectContext context = makeContext();
     const int width = coherence == Coherence::Coherent ? scene.packetWidth() : 1;
     if (width == 16) return occludedPackets<16>(scene.handle(), rays, blocked, context);

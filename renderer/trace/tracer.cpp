@@ -331,6 +331,9 @@ void Tracer::resetCounts() {
     impl_->cameraRays = impl_->bounceRays = impl_->shadowRays = impl_->nonFinite = 0;
 }
 
+void Tracer::recordRays(RayRecorder* recorder) { impl_->scene.embree.record(recorder); }
+const EmbreeScene& Tracer::embree() const { return impl_->scene.embree; }
+
 size_t Tracer::byteCount() const {
     return impl_->scene.embree.byteCount() + impl_->scene.tables.byteCount() + impl_->scene.lights.byteCount();
 }

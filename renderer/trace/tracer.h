@@ -13,6 +13,9 @@
 
 namespace lumi {
 
+class EmbreeScene;
+class RayRecorder;
+
 /// One path to trace.
 struct PathStart {
     Ray ray;
@@ -85,6 +88,10 @@ public:
     void resetCounts();
     /// Bytes held by Embree and by our own tables.
     size_t byteCount() const;
+
+    /// For measurements: the rays themselves, and the scene they are traced in. Null stops recording.
+    void recordRays(RayRecorder* recorder);
+    const EmbreeScene& embree() const;
 
 private:
     struct Impl;

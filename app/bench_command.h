@@ -1,0 +1,14 @@
+#pragma once
+#include <stop_token>
+#include <string>
+
+#include "base/messages.h"
+
+namespace lumi {
+
+struct MachineOptions;
+
+/// Measures what the filter leaves (study/bench.h) and prints a table, row by row as it comes, or one JSON value.
+int runBenchCommand(const std::string& filter, const MachineOptions& machine, MessageLog& log, std::stop_token stop);
+
+}  // namespace lumi

@@ -1,0 +1,40 @@
+#pragma once
+#include <functional>
+#include <stop_token>
+#include <string>
+
+#include "base/messages.h"
+
+namespace lumi {
+
+/// One measurement and what it is held against.
+struct BenchResult {
+    std::string name;      ///< `trace/path/atrium`
+    double value = 0;
+    std::string unit;      ///< "Mray/s", "frame/s": more is better; "s", "MiB": less is better
+    double medianMs = 0;   ///< of one run; 0 where no time was measured
+    double spread = 0;     ///< (slowest - fastest) / median of the runs
+    double limit = 0;      ///< in the same unit; 0: there is none
+    double ratioToLimit() const { return limit > 0 ? value / limit : 0; }
+};
+
+struct BenchOptions {
+    std::string filter;   ///< regular expression; only entries in whose name it is found
+    std::string program;  ///< our own binary, which memory is measured in; empty: those entries are left out
+    std::stop_token stop;
+};
+
+/// Runs the entries that the filter leaves and hands each result on as it is there. Throws Error(Usage) if the filter is
+/// no regular expression or leaves nothing, Error(Interrupted) if stopped. Entries, where this machine has what they need:
+///   trace/primary|bounce|shadow/<scene>: our ray functions over the rays that a frame traces, in Mray/s. The limit is
+///     single-ray rtcIntersect1 and rtcOccluded1 over the same rays in the same order.
+///   trace/path/<scene>: full path tracing, every ray counted; the limit is the same over all rays of the frame.
+///   trace/frame/<scene>: frames a second at one sample a pixel and one bounce; the limit is its bare rays.
+///   trace/embree-pathtracer/<scene>: our Mray/s on an OBJ at one sample a pixel; the limit is what Embree's program
+///     `pathtracer` reports for the same file, camera, light, size and path length (Debian's embree-tools).
+///   load/<scene>, build/<scene>: seconds to read a scene, and to make it ready for rays.
+///   memory/<scene>: peak of a program that loads and renders it; the limit is twice what scene and tracer hold.
+/// Frames are 640x360, and times are medians of runs that alternate between what is measured and its limit.
+void runBench(const BenchOptions& options, MessageLog& log, const std::function<void(const BenchResult&)>& onResult);
+
+}  // namespace lumi
