@@ -151,16 +151,41 @@ EnvironmentLight::Grid EnvironmentLight::finestGrid() const {
     return grid;
 }
 
+/// `cell` is the solid angle of a cell of the finest grid over the sine of its angle from +Y; weights hold that sine.
+void EnvironmentLight::buildAmbientCube(const Grid& grid, double cell) {
+    std::array<double, 6> sums{};
+    for (int row = 0; row < grid.rows; ++row)
+        for (int column = 0; column < grid.columns; ++column) {
+            const Vec3 d = directionFromLatLong(Vec2((static_cast<float>(column) + 0.5f) / static_cast<float>(grid.columns),
+                                                     (static_cast<float>(row) + 0.5f) / static_cast<float>(grid.rows)));
+            const double weight = grid.weight[static_cast<size_t>(row) * static_cast<size_t>(grid.columns) +
+                                              static_cast<size_t>(column)] * cell;
+            for (int axis = 0; axis < 3; ++axis)
+                sums[static_cast<size_t>(2 * axis + (d[axis] < 0))] += weight * std::abs(d[axis]);
+        }
+    for (size_t side = 0; side < 6; ++side) ambient_[side] = static_cast<float>(sums[side]);
+}
+
+float EnvironmentLight::irradiance(const Vec3& normal) const {
+    if (!image_) return kPi * meanLuminance_;
+    const Vec3 n = toImage(normal);
+    float sum = 0;
+    for (int axis = 0; axis < 3; ++axis) sum += sqr(n[axis]) * ambient_[static_cast<size_t>(2 * axis + (n[axis] < 0))];
+    return sum * scale_;
+}
+
 void EnvironmentLight::buildTables() {
     Grid grid = finestGrid();
     imageMeanLuminance_ = static_cast<float>(grid.luminance);
     // Coarsen while the samples stay nearly as good.
     const double finest = grid.secondMoment();
+    const double cell = 2 * double(kPi) * double(kPi) / static_cast<double>(grid.weight.size());
     while (grid.columns > kLeastColumns && grid.columns % 2 == 0 && grid.rows % 2 == 0) {
         Grid half = grid.halved();
         if (half.secondMoment() > kMostGrowth * finest) break;
         grid = std::move(half);
     }
+    buildAmbientCube(grid, cell);
     columns_ = grid.columns;
     rows_ = grid.rows;
     const std::vector<float> weights(grid.weight.begin(), grid.weight.end());

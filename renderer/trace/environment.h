@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -24,6 +25,9 @@ public:
     float pdf(const Vec3& direction) const;
     /// Mean over the sphere of the luminance.
     float meanLuminance() const { return meanLuminance_; }
+    /// About the luminance of the irradiance on a plane with unit world normal `normal`, W/m^2: exact along the image's
+    /// axes, squares of the normal's components between them ["ambient cube", Mitchell et al. 2006].
+    float irradiance(const Vec3& normal) const;
     size_t byteCount() const {
         return (rowCdf_.size() + columnCdf_.size()) * sizeof(float) + texels_.size() * sizeof(Vec3) +
                (rowGuide_.size() + columnGuide_.size()) * sizeof(uint16_t);
@@ -34,6 +38,7 @@ private:
     struct Grid;
     Grid finestGrid() const;
     void buildTables();
+    void buildAmbientCube(const Grid& grid, double cell);
     Vec3 imageRadiance(Vec2 uv) const;
     Vec3 toImage(const Vec3& world) const {
         return {cos_ * world.x - sin_ * world.z, world.y, sin_ * world.x + cos_ * world.z};
@@ -46,6 +51,7 @@ private:
     float scale_ = 1, cos_ = 1, sin_ = 0;
     bool black_ = true;
     float imageMeanLuminance_ = 0, meanLuminance_ = 0;
+    std::array<float, 6> ambient_{};  ///< irradiance along +X, -X, +Y, -Y, +Z, -Z of the image, scale left out
     int columns_ = 0, rows_ = 0;
     int width_ = 0, height_ = 0;
     std::vector<Vec3> texels_;                      ///< the image, interleaved

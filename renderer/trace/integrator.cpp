@@ -43,6 +43,12 @@ Integrator::Integrator(const TraceScene& scene, const PathSettings& settings, ui
     usesLightSamples_ = !scene.lights.empty() && (settings.strategy != DirectStrategy::Bsdf || scene.lights.hasDelta());
 }
 
+LightReceiver Integrator::receiverAt(const PathState& path, const Surface& surface) const {
+    using Facing = LightReceiver::Facing;
+    const Facing facing = surface.inputs.transmission > 0 ? Facing::Both : Facing::Front;
+    return {surface.position, surface.geometricNormal, path.ray.time, facing, settings_.lightSampling};
+}
+
 float Integrator::misWeight(float pdf, float otherPdf) const {
     const float a = pdf * pdf, b = otherPdf * otherPdf;
     return std::isinf(a) ? 1 : a / (a + b);
@@ -74,7 +80,6 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
         path = PathState();
         path.ray = {start.ray.origin, start.ray.tmin, start.ray.direction, start.ray.tmax, start.ray.time, 0};
         path.cone = start.cone;
-        path.scatterPosition = start.ray.origin;
         path.stream = SampleStream(settings_.sampler, settings_.haltonLoop, seed_, start.key);
         path.hash = hashCombine(hashCombine(start.key.x, start.key.y), start.key.sample, seed_);
         path.slot = start.slot, path.sample = start.key.sample;
@@ -193,8 +198,9 @@ void Integrator::shade(PathBatch& batch, uint32_t row, int depth, std::span<cons
 
 void Integrator::shadeMiss(PathState& path, int depth, PathVertex* vertex, PathBatch& batch) const {
     const bool certain = depth == 0 || path.scatterPdf <= 0 || settings_.strategy == DirectStrategy::Bsdf;
-    const Vec3 radiance = scene_.lights.escaped(path.ray.direction, depth == 0, [&](float lightPdf) {
-        if (certain || lightPdf <= 0) return 1.0f;
+    const LightReceiver* receiver = certain ? nullptr : &path.scatter;
+    const Vec3 radiance = scene_.lights.escaped(path.ray.direction, depth == 0, receiver, [&](float lightPdf) {
+        if (lightPdf <= 0) return 1.0f;
         return settings_.strategy == DirectStrategy::Light ? 0.0f : misWeight(path.scatterPdf, lightPdf);
     });
     const Vec3 emitted = isBlack(radiance) ? radiance : limited(path, radiance, depth);
@@ -214,8 +220,8 @@ void Integrator::addEmission(PathState& path, const Surface& surface, int depth,
         const Vec3& direction = path.ray.direction;
         const float lightPdf =
             surface.body >= 0
-                ? scene_.lights.pdfBody(surface.body, path.scatterPosition, direction, surface.position)
-                : scene_.lights.pdfTriangle(surface.point.instance, surface.point.primitive, path.scatterPosition,
+                ? scene_.lights.pdfBody(surface.body, path.scatter, direction, surface.position)
+                : scene_.lights.pdfTriangle(surface.point.instance, surface.point.primitive, path.scatter,
                                             direction, surface.position, surface.outwardNormal);
         if (lightPdf > 0)
             weight = settings_.strategy == DirectStrategy::Light ? 0 : misWeight(path.scatterPdf, lightPdf);
@@ -243,10 +249,11 @@ void Integrator::describeVertex(const PathState& path, const Surface& surface, c
 void Integrator::sampleLight(PathBatch& batch, uint32_t index, const Surface& surface, const Frame& frame,
                              const Bsdf& bsdf, int depth, PathVertex* vertex) const {
     PathState& path = batch.paths[index];
+    const LightReceiver receiver = receiverAt(path, surface);
     const Vec2 pick = path.stream.get2(dimension::vertex(depth, dimension::kLight));
     const Vec2 u = path.stream.get2(dimension::vertex(depth, dimension::kLightPoint));
     LightSample light;
-    if (!scene_.lights.sample(surface.position, pick, u, light)) return;
+    if (!scene_.lights.sample(receiver, pick, u, light)) return;
     if (settings_.strategy == DirectStrategy::Bsdf && light.hittable) return;
 
     // Scattering towards the light; the shading normal may not let it through the surface.
@@ -328,7 +335,7 @@ bool Integrator::continuePath(PathState& path, const Surface& surface, const Fra
         }
     }
     path.throughput *= weight;
-    path.scatterPosition = surface.position;
+    path.scatter = receiverAt(path, surface);
     path.scatterPdf = sample.delta ? 0 : sample.pdf;
     ++(diffuse ? path.diffuseCount : path.specularCount);
     path.diffuseBefore |= diffuse;

@@ -42,6 +42,7 @@ private:
     void describeVertex(const PathState& path, const Surface& surface, const Vec3& wo, int depth,
                         PathVertex& vertex) const;
     void traceShadows(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const;
+    LightReceiver receiverAt(const PathState& path, const Surface& surface) const;
     float misWeight(float pdf, float otherPdf) const;
     Vec3 limited(const PathState& path, const Vec3& radiance, int depth) const;
     void add(PathBatch& batch, PathState& path, const Vec3& contribution) const;

@@ -73,11 +73,12 @@ bool Lights::sampleBody(const BodyRecord& body, const Vec3& position, Vec2 u, Li
     return true;
 }
 
-float Lights::pdfBody(int bodyIndex, const Vec3& position, const Vec3& direction, const Vec3& hitPosition) const {
+float Lights::pdfBody(int bodyIndex, const LightReceiver& receiver, const Vec3& direction,
+                      const Vec3& hitPosition) const {
+    const Vec3& position = receiver.position;
     const BodyRecord& body = tables_->bodies[static_cast<size_t>(bodyIndex)];
-    const uint32_t entry = bodyEntry_[static_cast<size_t>(bodyIndex)];
     const LightShape& shape = body.shape;
-    const float pick = entry != kNone && !picks_.empty() ? picks_.probability(entry) : 0;
+    const float pick = pickProbability(receiver, firstBody_ + static_cast<uint32_t>(bodyIndex));
     if (!(pick > 0)) return 0;
     if (shape.type == LightType::Sphere) {
         const float oneMinusCos = coneOfSphere(shape, position);

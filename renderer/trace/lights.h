@@ -3,6 +3,8 @@
 
 #include "trace/alias_table.h"
 #include "trace/environment.h"
+#include "trace/light_receiver.h"
+#include "trace/light_tree.h"
 #include "trace/ray.h"
 #include "trace/scene_tables.h"
 
@@ -23,9 +25,12 @@ struct LightSample {
     Vec3 position{0};       ///< the light's point; for infinite lights the direction
 };
 
-/// All lights of a posed scene, drawn in proportion to power: emissive triangles (an entry each), rectangles (by solid
-/// angle [Urena 2013]), disks and triangles (by area), spheres (by the cone they fill), points, spots, directional
-/// lights (a cone if they have an angle), and the environment.
+/// All lights of a posed scene: emissive triangles (an entry each), rectangles (by solid angle [Urena 2013]), disks and
+/// triangles (by area), spheres (by the cone they fill), points, spots, directional lights (a cone if they have an
+/// angle), and the environment.
+///
+/// One is chosen in proportion to power, or (LightSampling::Tree) by importance to the receiver: those at finite places
+/// from a light tree, infinite ones by the irradiance they cause on it. Entries of finite lights come first.
 class Lights {
 public:
     /// Rebuilds in parallel what `posed` changed; `tables` is of the same scene and must outlive this.
@@ -40,29 +45,30 @@ public:
     /// Is there a light that only light samples find?
     bool hasDelta() const { return hasDelta_; }
 
-    /// Chooses a light by `pick` and a point of it by `u`. False if nothing can reach `position` that way.
-    bool sample(const Vec3& position, Vec2 pick, Vec2 u, LightSample& out) const;
+    /// Chooses a light by `pick` and a point of it by `u`. False if nothing can reach the receiver that way.
+    bool sample(const LightReceiver& receiver, Vec2 pick, Vec2 u, LightSample& out) const;
 
     /// The sample's radiance: sky is looked up here, so that samples that cannot contribute never wait for memory.
     Vec3 radiance(const LightSample& sample) const {
         return sample.sky ? environment_.radianceAt(sample.skyPlace) : sample.radiance;
     }
 
-    /// Density with which sample() from `position` makes `direction`, which meets an emissive triangle at
+    /// Density with which sample() for `receiver` makes `direction`, which meets an emissive triangle at
     /// `hitPosition` (unit `hitNormal`) or a light's body.
-    float pdfTriangle(uint32_t instance, uint32_t primitive, const Vec3& position, const Vec3& direction,
+    float pdfTriangle(uint32_t instance, uint32_t primitive, const LightReceiver& receiver, const Vec3& direction,
                       const Vec3& hitPosition, const Vec3& hitNormal) const;
-    float pdfBody(int body, const Vec3& position, const Vec3& direction, const Vec3& hitPosition) const;
+    float pdfBody(int body, const LightReceiver& receiver, const Vec3& direction, const Vec3& hitPosition) const;
 
     /// Radiance that a path finds that leaves the scene along `direction`: the sky, and directional lights with an
-    /// angle unless `cameraRay` (they are not seen directly); with the density of sample() for each summed MIS-weighted
-    /// by `weight(pdf)`.
+    /// angle unless `cameraRay` (they are not seen directly); weighted by `weight(pdf)` of the density of sample() for
+    /// each, which is asked for `receiver` (null: nothing samples lights, weights are 1).
     template <class Weight>
-    Vec3 escaped(const Vec3& direction, bool cameraRay, Weight&& weight) const;
+    Vec3 escaped(const Vec3& direction, bool cameraRay, const LightReceiver* receiver, Weight&& weight) const;
 
     const EnvironmentLight& environment() const { return environment_; }
-    /// Probability of choosing an entry.
-    float pickProbability(uint32_t entry) const { return picks_.probability(entry); }
+    /// Probability of choosing an entry for `receiver`; over all entries they add up to 1, or to less where lights were
+    /// left that cannot reach it.
+    float pickProbability(const LightReceiver& receiver, uint32_t entry) const;
     /// The entry of an emissive triangle, or -1.
     int entryOf(uint32_t instance, uint32_t primitive) const;
     size_t byteCount() const;
@@ -84,11 +90,28 @@ private:
     struct Sun {
         Vec3 towards, radiance, irradiance;
         float oneMinusCos = 0;  ///< 0: a delta
-        int entry = -1;
+        float sine = 0;         ///< of half its angle
+    };
+    /// What building collects.
+    struct Collected {
+        std::vector<float> weights;       ///< power, for each entry
+        std::vector<LightBounds> bounds;  ///< for each entry at a finite place
+    };
+    struct Choice {
+        uint32_t entry = kNone;
+        float probability = 0;
     };
 
-    void addTriangles(std::vector<float>& weights);
-    void addShapedAndPunctual(const PosedScene& posed, std::vector<float>& weights);
+    void addTriangles(Collected& collected);
+    void addBodies(Collected& collected);
+    void addPoints(const PosedScene& posed, Collected& collected);
+    void addInfinite(const PosedScene& posed, Collected& collected);
+
+    Choice choose(const LightReceiver& receiver, Vec2 pick) const;
+    float infiniteImportance(const LightReceiver& receiver, uint32_t infinite) const;
+    float infiniteImportance(const LightReceiver& receiver) const;
+    float treeShare(const LightReceiver& receiver, float elsewhere) const;
+
     bool sampleTriangle(const Triangle& triangle, const Vec3& position, Vec2 u, LightSample& out) const;
     bool sampleBody(const BodyRecord& body, const Vec3& position, Vec2 u, LightSample& out) const;
     bool samplePoint(const Point& point, const Vec3& position, LightSample& out) const;
@@ -101,29 +124,33 @@ private:
     std::vector<Sun> suns_;
     std::vector<uint32_t> firstTriangle_;  ///< of each instance, into triangleEntry_; kNone: it does not emit
     std::vector<uint32_t> triangleEntry_;  ///< entry of each triangle of emitting instances, kNone if it does not emit
-    std::vector<uint32_t> bodyEntry_;
+    uint32_t firstBody_ = 0;               ///< entry
+    uint32_t finiteCount_ = 0;             ///< entries before this are in the tree, in its order
     AliasTable picks_;
+    LightTree tree_;
     EnvironmentLight environment_;
-    int environmentEntry_ = -1;
     bool hittable_ = false, hasEmitters_ = false, hasDelta_ = false;
     static constexpr uint32_t kNone = ~0u;
 };
 
 template <class Weight>
-Vec3 Lights::escaped(const Vec3& direction, bool cameraRay, Weight&& weight) const {
+Vec3 Lights::escaped(const Vec3& direction, bool cameraRay, const LightReceiver* receiver, Weight&& weight) const {
     Vec3 sum(0);
+    const auto pick = [&](size_t infinite) {
+        return receiver ? pickProbability(*receiver, finiteCount_ + static_cast<uint32_t>(infinite)) : 0.0f;
+    };
     if (!environment_.black()) {
-        const float pdf = environmentEntry_ >= 0 ? picks_.probability(static_cast<uint32_t>(environmentEntry_)) : 0;
-        sum += environment_.radiance(direction) * weight(pdf > 0 ? pdf * environment_.pdf(direction) : 0.0f);
+        const float chosen = pick(suns_.size());
+        sum += environment_.radiance(direction) * weight(chosen > 0 ? chosen * environment_.pdf(direction) : 0.0f);
     }
     if (cameraRay) return sum;
-    for (const Sun& sun : suns_) {
+    for (size_t i = 0; i < suns_.size(); ++i) {
+        const Sun& sun = suns_[i];
         if (sun.oneMinusCos <= 0) continue;
         // 1 - cos of the angle between two unit vectors, without cancellation.
         const Vec3 difference = direction - sun.towards;
         if (0.5f * glm::dot(difference, difference) > sun.oneMinusCos) continue;
-        const float pick = sun.entry >= 0 ? picks_.probability(static_cast<uint32_t>(sun.entry)) : 0;
-        sum += sun.radiance * weight(pick / (2 * kPi * sun.oneMinusCos));
+        sum += sun.radiance * weight(pick(i) / (2 * kPi * sun.oneMinusCos));
     }
     return sum;
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "trace/light_receiver.h"
 #include "trace/observer.h"
 #include "trace/packets.h"
 #include "trace/sampler.h"
@@ -14,7 +15,7 @@ struct PathState {
     RayCone cone;
     Vec3 throughput{1};
     Vec3 radiance{0};
-    Vec3 scatterPosition{0};  ///< of the last scattering: where densities of light samples refer to
+    LightReceiver scatter;  ///< the last scattering: what densities of light samples refer to
     float scatterPdf = 0;     ///< per solid angle; 0 after a delta lobe
     Vec3 absorption{0};       ///< 1/m, of the solid the path is in
     SampleStream stream;

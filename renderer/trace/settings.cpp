@@ -27,6 +27,12 @@ void PathSettings::describe(ParameterVisitor& v) {
               .help = "How light is found: multiple importance sampling (power heuristic), light samples alone, or "
                       "continued paths alone (with light samples for lights without extent).",
               .redo = Redo::Samples});
+    v.choice("path.light-sampling", lightSampling,
+             {.label = "Light choice",
+              .options = {"power", "tree"},
+              .help = "How a light is chosen: in proportion to power, or by its importance to the surface, from a tree "
+                      "over all lights [Conty & Kulla 2018].",
+              .redo = Redo::Samples});
     v.toggle("path.roulette", roulette,
              {.label = "Russian roulette",
               .help = "Ends dim paths at random and weights the others up.",

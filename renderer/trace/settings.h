@@ -5,6 +5,7 @@ namespace lumi {
 
 enum class SamplerKind { Sobol, Halton, Independent };
 enum class DirectStrategy { Mis, Light, Bsdf };
+enum class LightSampling : uint8_t { Power, Tree };
 enum class Jitter { Auto, PerFrame, PerPixel, None };
 
 /// Settings of light transport: `path.*` and `sampler.*` in parameter ids.
@@ -17,6 +18,7 @@ struct PathSettings {
     bool clamp = false;           ///< limit each path contribution after the first surface
     float clampRadiance = 10;     ///< W/(m^2 sr)
     DirectStrategy strategy = DirectStrategy::Mis;
+    LightSampling lightSampling = LightSampling::Tree;  ///< how a light is chosen
     bool multipleScattering = true;  ///< between the facets of rough reflecting surfaces [Kulla & Conty 2017]
     bool regularize = false;      ///< path-space regularization [Kaplanyan 2013]: widen lobes after a diffuse vertex
     float regularizeRoughness = 0.3f;

@@ -1,0 +1,305 @@
+#include "trace/light_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "base/isa.h"
+#include "base/parallel.h"
+#include "math/hash.h"
+
+namespace lumi {
+namespace {
+
+constexpr int kWidth = LightTreeNode::kWidth;
+constexpr int kBins = 12;
+/// Ranges of fewer lights are built by one thread.
+constexpr size_t kAlone = 4096;
+
+/// Solid angle that the lights shine into, weighted by the cosine [Conty Estevez & Kulla 2018, equation 1].
+float orientationMeasure(const LightBounds& b) {
+    const float spread = std::acos(std::clamp(b.cosSpread, -1.0f, 1.0f));
+    const float reach = std::acos(std::clamp(b.cosReach, -1.0f, 1.0f));
+    const float whole = std::min(spread + reach, kPi);
+    const float sinSpread = std::sin(spread);
+    return 2 * kPi * (1 - b.cosSpread) + kPi / 2 *
+                                             (2 * whole * sinSpread - std::cos(spread - 2 * whole) -
+                                              2 * spread * sinSpread + b.cosSpread);
+}
+
+float areaOf(const Bounds3& box) {
+    const Vec3 s = box.size();
+    return 2 * (s.x * s.y + s.y * s.z + s.z * s.x);
+}
+
+/// What a group costs: how likely it is to be visited, times what is missed by taking it for one light. Without an area
+/// (lights along a line or at one place) its length counts a little, so that orientation and intensity still tell.
+float costOf(const LightBounds& b) {
+    const float length = glm::length(b.box.size());
+    return b.intensity * orientationMeasure(b) * (areaOf(b.box) + 1e-3f * length * length + 1e-20f);
+}
+
+/// A range of the order of lights, with its bounds.
+struct Range {
+    uint32_t begin = 0, end = 0;
+    LightBounds bounds;
+    uint32_t size() const { return end - begin; }
+};
+
+class Builder {
+public:
+    explicit Builder(std::span<const LightBounds> lights) : lights_(lights), order_(lights.size()) {
+        for (uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
+    }
+
+    /// Appends the subtree over `range` to `nodes`, its root first.
+    void build(const Range& range, std::vector<LightTreeNode>& nodes) {
+        std::array<Range, kWidth> children;
+        const int count = divide(range, children);
+        const auto self = nodes.size();
+        nodes.emplace_back(emptyNode());
+        const bool together = range.size() > kAlone;
+        std::array<std::vector<LightTreeNode>, kWidth> subtrees;
+        if (together)
+            parallelFor(count, [&](int64_t i) {
+                const auto c = static_cast<size_t>(i);
+                if (children[c].size() > 1) build(children[c], subtrees[c]);
+            });
+        for (int c = 0; c < count; ++c) {
+            const Range& child = children[static_cast<size_t>(c)];
+            setColumn(nodes[self], c, child.bounds);
+            if (child.size() == 1) {
+                nodes[self].child[c] = LightTreeNode::kLight | order_[child.begin];
+                continue;
+            }
+            const auto first = static_cast<uint32_t>(nodes.size());
+            nodes[self].child[c] = first;
+            if (together)
+                append(nodes, subtrees[static_cast<size_t>(c)], first);
+            else
+                build(child, nodes);
+        }
+    }
+
+    Range whole() const {
+        Range range{0, static_cast<uint32_t>(order_.size()), {}};
+        range.bounds = boundsOf(range.begin, range.end);
+        return range;
+    }
+
+private:
+    static LightTreeNode emptyNode() {
+        LightTreeNode node{};
+        for (int c = 0; c < kWidth; ++c) node.axisZ[c] = 1, node.child[c] = LightTreeNode::kLight;
+        return node;
+    }
+    static void setColumn(LightTreeNode& node, int c, const LightBounds& b) {
+        const Vec3 centre = b.box.centre();
+        node.x[c] = centre.x, node.y[c] = centre.y, node.z[c] = centre.z;
+        // A little more than the box: rounding must not make a light vanish that shines along its own plane.
+        node.radius[c] = b.box.radius() * 1.0001f + 1e-6f * maxComponent(glm::abs(centre));
+        node.axisX[c] = b.axis.x, node.axisY[c] = b.axis.y, node.axisZ[c] = b.axis.z;
+        node.cosSpread[c] = b.cosSpread, node.cosReach[c] = b.cosReach;
+        node.bothSides[c] = b.bothSides ? 1.0f : 0.0f;
+        node.intensity[c] = b.intensity;
+    }
+    static void append(std::vector<LightTreeNode>& nodes, const std::vector<LightTreeNode>& subtree, uint32_t first) {
+        for (const LightTreeNode& node : subtree) {
+            nodes.push_back(node);
+            for (uint32_t& child : nodes.back().child)
+                if (!(child & LightTreeNode::kLight)) child += first;
+        }
+    }
+
+    LightBounds boundsOf(uint32_t begin, uint32_t end) const {
+        LightBounds bounds = lights_[order_[begin]];
+        for (uint32_t i = begin + 1; i < end; ++i) bounds = unite(bounds, lights_[order_[i]]);
+        return bounds;
+    }
+
+    /// Cuts `range` into up to eight, always the costliest first. Returns how many.
+    int divide(const Range& range, std::array<Range, kWidth>& parts) {
+        parts[0] = range;
+        int count = 1;
+        while (count < kWidth) {
+            int worst = -1;
+            float cost = -1;
+            for (int i = 0; i < count; ++i) {
+                const Range& part = parts[static_cast<size_t>(i)];
+                const float own = part.size() > 1 ? costOf(part.bounds) : -1;
+                if (own > cost) worst = i, cost = own;
+            }
+            if (worst < 0) break;
+            parts[static_cast<size_t>(count)] = split(parts[static_cast<size_t>(worst)]);
+            ++count;
+        }
+        return count;
+    }
+
+    struct Cut {
+        float cost = kInfinity;
+        int axis = -1, bin = 0;
+        LightBounds left, right;
+    };
+
+    /// Shortens `range` to the left part of its best cut and returns the right part.
+    Range split(Range& range) {
+        Bounds3 centres;
+        for (uint32_t i = range.begin; i < range.end; ++i) centres.extend(lights_[order_[i]].box.centre());
+        Cut best;
+        for (int axis = 0; axis < 3; ++axis)
+            if (centres.upper[axis] > centres.lower[axis]) tryAxis(range, centres, axis, best);
+        const auto begin = order_.begin() + range.begin, end = order_.begin() + range.end;
+        auto middle = begin;
+        if (best.axis >= 0)
+            middle = std::partition(begin, end, [&](uint32_t light) {
+                return binOf(lights_[light].box.centre()[best.axis], centres, best.axis) < best.bin;
+            });
+        if (middle == begin || middle == end) {
+            // All in one place.
+            middle = begin + range.size() / 2;
+            const auto at = static_cast<uint32_t>(middle - order_.begin());
+            best.left = boundsOf(range.begin, at), best.right = boundsOf(at, range.end);
+        }
+        const auto at = static_cast<uint32_t>(middle - order_.begin());
+        const Range right{at, range.end, best.right};
+        range = {range.begin, at, best.left};
+        return right;
+    }
+
+    static int binOf(float centre, const Bounds3& centres, int axis) {
+        const float part = (centre - centres.lower[axis]) / (centres.upper[axis] - centres.lower[axis]);
+        return std::clamp(static_cast<int>(part * kBins), 0, kBins - 1);
+    }
+
+    void tryAxis(const Range& range, const Bounds3& centres, int axis, Cut& best) const {
+        std::array<LightBounds, kBins> bins;
+        std::array<uint32_t, kBins> counts{};
+        for (uint32_t i = range.begin; i < range.end; ++i) {
+            const LightBounds& light = lights_[order_[i]];
+            const auto bin = static_cast<size_t>(binOf(light.box.centre()[axis], centres, axis));
+            bins[bin] = counts[bin]++ ? unite(bins[bin], light) : light;
+        }
+        // Right sides first, from the last bin on; then each cut with its left side.
+        std::array<LightBounds, kBins> rights;
+        LightBounds side;
+        bool any = false;
+        for (int b = kBins - 1; b > 0; --b) {
+            const auto bin = static_cast<size_t>(b);
+            if (counts[bin]) side = any ? unite(bins[bin], side) : bins[bin], any = true;
+            rights[bin] = side;
+        }
+        uint32_t before = 0;
+        any = false;
+        for (int b = 1; b < kBins; ++b) {
+            const auto bin = static_cast<size_t>(b - 1);
+            if (counts[bin]) side = any ? unite(side, bins[bin]) : bins[bin], any = true;
+            before += counts[bin];
+            if (before == 0 || before == range.size()) continue;
+            // Long boxes are better cut across their length (the paper's factor K_r).
+            const Vec3 size = range.bounds.box.size();
+            const float cost = (costOf(side) + costOf(rights[static_cast<size_t>(b)])) * maxComponent(size) /
+                               std::max(size[axis], 1e-20f);
+            if (cost < best.cost) best = {cost, axis, b, side, rights[static_cast<size_t>(b)]};
+        }
+    }
+
+    std::span<const LightBounds> lights_;
+    std::vector<uint32_t> order_;
+};
+
+uint64_t digestOf(std::span<const LightBounds> bounds) {
+    uint64_t digest = bounds.size();
+    const auto add = [&](float a, float b) {
+        digest = mixBits(digest ^ ((uint64_t(std::bit_cast<uint32_t>(a)) << 32) | std::bit_cast<uint32_t>(b)));
+    };
+    for (const LightBounds& b : bounds) {
+        add(b.box.lower.x, b.box.lower.y), add(b.box.lower.z, b.box.upper.x), add(b.box.upper.y, b.box.upper.z);
+        add(b.axis.x, b.axis.y), add(b.axis.z, b.cosSpread), add(b.cosReach, b.intensity);
+        add(b.bothSides ? 1.0f : 0.0f, 0);
+    }
+    return digest;
+}
+
+/// A light whose place is not a number shines nowhere.
+std::vector<LightBounds> sane(std::span<const LightBounds> bounds) {
+    std::vector<LightBounds> result(bounds.begin(), bounds.end());
+    for (LightBounds& b : result) {
+        const bool good = isFinite(b.box.lower) && isFinite(b.box.upper) && isFinite(b.axis) && b.intensity > 0 &&
+                          std::isfinite(b.intensity);
+        if (!good) b = LightBounds{{Vec3(0), Vec3(0)}, {0, 0, 1}, 1, 0, false, 0};
+    }
+    return result;
+}
+
+}  // namespace
+
+LightBounds unite(const LightBounds& a, const LightBounds& b) {
+    LightBounds all = a;
+    all.box.extend(b.box);
+    all.intensity = a.intensity + b.intensity;
+    all.cosReach = std::min(a.cosReach, b.cosReach);
+    all.bothSides = a.bothSides || b.bothSides;
+    // The cone around both spreads; with both sides lit the opposite axis is as good.
+    const LightBounds& wide = a.cosSpread <= b.cosSpread ? a : b;
+    const LightBounds& narrow = &wide == &a ? b : a;
+    float between = glm::dot(wide.axis, narrow.axis);
+    const bool flips = all.bothSides && between < 0;
+    const Vec3 axis = flips ? -narrow.axis : narrow.axis;
+    between = std::clamp(flips ? -between : between, -1.0f, 1.0f);
+    all.axis = wide.axis;
+    all.cosSpread = wide.cosSpread;
+    if (wide.cosSpread <= -1) return all;
+    if (narrow.cosSpread >= 1 && between >= wide.cosSpread) return all;
+    const float spreadWide = std::acos(std::clamp(wide.cosSpread, -1.0f, 1.0f));
+    const float spreadNarrow = std::acos(std::clamp(narrow.cosSpread, -1.0f, 1.0f));
+    const float angle = std::acos(between);
+    if (angle + spreadNarrow <= spreadWide) return all;
+    const float spread = 0.5f * (spreadWide + angle + spreadNarrow);
+    const float turn = spread - spreadWide, sine = std::sin(angle);
+    const Vec3 turned = sine > 1e-4f ? wide.axis * (std::sin(angle - turn) / sine) + axis * (std::sin(turn) / sine)
+                                     : wide.axis;
+    const float length = glm::length(turned);
+    // Opposite axes have no middle; nearly equal ones need none, their spread is a little more.
+    if (!(spread < kPi) || !(length > 0.5f) || (sine <= 1e-4f && between < 0)) {
+        all.cosSpread = -1;
+        return all;
+    }
+    all.axis = turned / length;
+    all.cosSpread = std::cos(std::min(spread + (sine > 1e-4f ? 1e-4f : 1e-4f + turn), kPi));
+    return all;
+}
+
+void LightTree::build(std::span<const LightBounds> bounds) {
+    kernels_ = &lightTreeKernels();
+    const uint64_t digest = digestOf(bounds);
+    if (digest == digest_ && places_.size() == bounds.size()) return;
+    digest_ = digest;
+    nodes_.clear(), parents_.clear(), places_.clear();
+    if (bounds.empty()) return;
+    const std::vector<LightBounds> lights = sane(bounds);
+    Builder builder(lights);
+    builder.build(builder.whole(), nodes_);
+    nodes_.shrink_to_fit();
+    parents_.assign(nodes_.size(), ~0u);
+    places_.assign(bounds.size(), ~0u);
+    for (uint32_t n = 0; n < nodes_.size(); ++n)
+        for (uint32_t c = 0; c < kWidth; ++c) {
+            const uint32_t child = nodes_[n].child[c], place = n * kWidth + c;
+            if (!(child & LightTreeNode::kLight))
+                parents_[child] = place;
+            else if (nodes_[n].intensity[c] > 0)
+                places_[child & ~LightTreeNode::kLight] = place;
+        }
+}
+
+size_t LightTree::byteCount() const {
+    return nodes_.capacity() * sizeof(LightTreeNode) + (parents_.capacity() + places_.capacity()) * sizeof(uint32_t);
+}
+
+const LightTreeKernels& lightTreeKernels() {
+    return selectKernels(baseline::lightTreeTable(), v3::lightTreeTable(), v4::lightTreeTable());
+}
+
+}  // namespace lumi

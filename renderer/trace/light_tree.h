@@ -1,0 +1,59 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "math/vector.h"
+#include "trace/light_tree_kernels.h"
+
+namespace lumi {
+
+/// Bounds of where lights are and where they shine to. Directions that a light faces lie within `cosSpread` of the axis (and
+/// of its opposite if `bothSides`), and it shines up to `cosReach` from each of them: a sphere has spread -1 and reach
+/// 0, a triangle 1 and 0, a spot 1 and the cosine of its cone.
+struct LightBounds {
+    Bounds3 box;
+    Vec3 axis{0, 0, 1};
+    float cosSpread = 1, cosReach = 0;
+    bool bothSides = false;
+    float intensity = 0;  ///< W/sr, luminance, where it shines most
+};
+
+/// The bounds of both.
+LightBounds unite(const LightBounds& a, const LightBounds& b);
+
+/// A tree over lights at finite places, from which one is drawn by its importance to a point
+/// [Conty Estevez & Kulla 2018]: built top-down by the surface area orientation heuristic (section 4.4) over bins.
+/// Differs from the paper: nodes have eight children, compared with each other at once, so that the walk down is short
+/// and lights that cannot reach the point are left out early; no splitting into several lights.
+class LightTree {
+public:
+    /// Light i of the tree is bounds[i]. Keeps what it has if the bounds are those of the last build.
+    void build(std::span<const LightBounds> bounds);
+
+    bool empty() const { return nodes_.empty(); }
+    /// Draws a light by u and v in [0, 1), or what is elsewhere; see LightTreeKernels.
+    LightTreeChoice pick(const LightTreePoint& point, float elsewhere, Vec2 u) const {
+        LightTreeChoice choice;
+        kernels_->pick(nodes_.data(), point, elsewhere, u.x, u.y, choice);
+        return choice;
+    }
+    /// The probability with which pick() draws `light`.
+    float probability(const LightTreePoint& point, float elsewhere, uint32_t light) const {
+        const uint32_t place = places_[light];
+        return place == ~0u ? 0 : kernels_->probability(nodes_.data(), parents_.data(), point, elsewhere, place);
+    }
+    /// The probability with which pick() draws any light of the tree.
+    float share(const LightTreePoint& point, float elsewhere) const {
+        return kernels_->share(nodes_.data(), point, elsewhere);
+    }
+    size_t byteCount() const;
+
+private:
+    const LightTreeKernels* kernels_ = nullptr;
+    std::vector<LightTreeNode> nodes_;
+    std::vector<uint32_t> parents_;  ///< place of each node in its parent
+    std::vector<uint32_t> places_;   ///< of each light; ~0 for those without intensity
+    uint64_t digest_ = 0;            ///< of the bounds
+};
+
+}  // namespace lumi

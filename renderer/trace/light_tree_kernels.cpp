@@ -1,0 +1,150 @@
+#include "trace/light_tree_kernels.h"
+
+#include <cmath>
+
+namespace lumi {
+namespace {
+
+constexpr int kWidth = LightTreeNode::kWidth;
+constexpr float kLeastShare = 0.1f;
+/// Below this chance of the columns chosen so far the first random number's digits run out, and the second goes on.
+constexpr float kDigits = 0x1p-10f;
+
+inline float positive(float x) { return x > 0 ? x : 0.0f; }
+
+/// Importance of the eight columns. Angles are kept as sine and cosine: cos(max(0, a - b)) is cos a cos b + sin a sin b,
+/// or 1 where a <= b.
+inline void importance(const LightTreeNode& node, const LightTreePoint& p, float* __restrict result) {
+    for (int i = 0; i < kWidth; ++i) {
+        // From the centre to the point; the sphere's half-angle as seen from there.
+        const float dx = p.x - node.x[i], dy = p.y - node.y[i], dz = p.z - node.z[i];
+        const float distance2 = dx * dx + dy * dy + dz * dz;
+        const float radius2 = node.radius[i] * node.radius[i];
+        const bool inside = distance2 <= radius2;
+        const float inverse = 1.0f / std::sqrt(distance2 > 1e-30f ? distance2 : 1e-30f);
+        const float sinBall = inside ? 1.0f : node.radius[i] * inverse;
+        const float cosBall = std::sqrt(positive(1 - sinBall * sinBall));
+
+        // Between what a light faces and the direction to the point: the least that it can be.
+        const float along = (node.axisX[i] * dx + node.axisY[i] * dy + node.axisZ[i] * dz) * inverse;
+        const float cosAxis = node.bothSides[i] > 0 ? std::fabs(along) : along;
+        const float sinAxis = std::sqrt(positive(1 - cosAxis * cosAxis));
+        const float cosSpread = node.cosSpread[i], sinSpread = std::sqrt(positive(1 - cosSpread * cosSpread));
+        const bool faced = cosAxis >= cosSpread;
+        const float cosRest = faced ? 1.0f : cosAxis * cosSpread + sinAxis * sinSpread;
+        const float sinRest = faced ? 0.0f : sinAxis * cosSpread - cosAxis * sinSpread;
+        const float cosLeaving =
+            inside || cosRest >= cosBall ? 1.0f : cosRest * cosBall + positive(sinRest) * sinBall;
+
+        // Between the point's normal and the direction to a light: the least that it can be.
+        const float toLight = -(p.normalX * dx + p.normalY * dy + p.normalZ * dz) * inverse;
+        const float cosNormal = p.facing == 2 ? std::fabs(toLight) : toLight;
+        const float sinNormal = std::sqrt(positive(1 - cosNormal * cosNormal));
+        const float bounded = cosNormal >= cosBall ? 1.0f : cosNormal * cosBall + sinNormal * sinBall;
+        const float cosArriving = inside || p.facing == 0 ? 1.0f : positive(bounded);
+
+        const float nearest2 = distance2 > radius2 ? distance2 : radius2;
+        const float value = node.intensity[i] * cosLeaving * cosArriving / (nearest2 > 1e-30f ? nearest2 : 1e-30f);
+        result[i] = cosLeaving > node.cosReach[i] && node.intensity[i] > 0 ? value : 0.0f;
+    }
+}
+
+inline float sumOf(const float* values) {
+    return ((values[0] + values[1]) + (values[2] + values[3])) + ((values[4] + values[5]) + (values[6] + values[7]));
+}
+
+/// Share of the tree in the choice, by what it weighs beside the rest.
+inline float shareOf(float tree, float elsewhere) {
+    if (!(tree > 0)) return 0;
+    if (!(elsewhere > 0)) return 1;
+    const float share = tree / (tree + elsewhere);
+    return share < kLeastShare ? kLeastShare : share > 1 - kLeastShare ? 1 - kLeastShare : share;
+}
+
+/// Column of the running sum that holds `x`, never an empty one; `x` becomes its part of it in [0, 1).
+inline int columnOf(const float* weights, float& x) {
+    int chosen = -1;
+    float rest = x;
+    for (int i = 0; i < kWidth; ++i) {
+        if (!(weights[i] > 0)) continue;
+        if (chosen >= 0) rest -= weights[chosen];
+        chosen = i;
+        if (rest < weights[i]) break;
+    }
+    const float part = chosen >= 0 ? rest / weights[chosen] : 0.0f;
+    x = part < 0 ? 0.0f : part < 0x1.fffffep-1f ? part : 0x1.fffffep-1f;
+    return chosen;
+}
+
+void pick(const LightTreeNode* nodes, const LightTreePoint& point, float elsewhere, float u, float v,
+          LightTreeChoice& out) {
+    out = LightTreeChoice();
+    alignas(64) float weights[kWidth];
+    importance(nodes[0], point, weights);
+    float sum = sumOf(weights);
+    const float share = shareOf(sum, elsewhere);
+    if (u >= share) {
+        if (!(elsewhere > 0)) return;
+        out.elsewhere = true;
+        out.probability = 1 - share;
+        out.u = (u - share) / (1 - share);
+        return;
+    }
+    u /= share;
+    float probability = share, sinceFresh = share;
+    bool fresh = true;  // the second number is unused
+    for (const LightTreeNode* node = nodes;;) {
+        if (!(sum > 0)) return;
+        if (fresh && sinceFresh < kDigits) {
+            u = v;
+            fresh = false;
+        }
+        float x = u * sum;
+        const int column = columnOf(weights, x);
+        u = x;
+        const float chance = weights[column] / sum;
+        probability *= chance;
+        sinceFresh *= chance;
+        const uint32_t child = node->child[column];
+        if (child & LightTreeNode::kLight) {
+            out.light = child & ~LightTreeNode::kLight;
+            out.probability = probability;
+            out.u = u;
+            return;
+        }
+        node = nodes + child;
+        importance(*node, point, weights);
+        sum = sumOf(weights);
+    }
+}
+
+float probability(const LightTreeNode* nodes, const uint32_t* parents, const LightTreePoint& point, float elsewhere,
+                  uint32_t place) {
+    float product = 1;
+    for (uint32_t at = place; at != ~0u; at = parents[at / kWidth]) {
+        alignas(64) float weights[kWidth];
+        importance(nodes[at / kWidth], point, weights);
+        const float sum = sumOf(weights), weight = weights[at % kWidth];
+        if (!(weight > 0)) return 0;
+        product *= weight / sum;
+        if (at < kWidth) product *= shareOf(sum, elsewhere);
+    }
+    return product;
+}
+
+float share(const LightTreeNode* nodes, const LightTreePoint& point, float elsewhere) {
+    alignas(64) float weights[kWidth];
+    importance(nodes[0], point, weights);
+    return shareOf(sumOf(weights), elsewhere);
+}
+
+}  // namespace
+
+namespace LUMI_ISA {
+const LightTreeKernels& lightTreeTable() {
+    static const LightTreeKernels table{pick, probability, share};
+    return table;
+}
+}  // namespace LUMI_ISA
+
+}  // namespace lumi

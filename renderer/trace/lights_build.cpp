@@ -1,0 +1,197 @@
+// Collecting the lights of a posed scene.
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "trace/lights.h"
+
+namespace lumi {
+namespace {
+
+/// Mean luminance that a triangle emits: its emission texture filtered over the triangle's extent. Triangles in
+/// darkness near light keep a small share, so that no texel with light is out of reach.
+float triangleLuminance(const MaterialRecord& material, const InstanceRecord& instance, const UVec3& t) {
+    const float factor = luminance(glm::max(material.emission, Vec3(0)));
+    if (!(material.textures & MaterialRecord::kEmission)) return factor;
+    const Texture& texture = material.source->emissionTexture;
+    const Vec2* uv = instance.uv[texture.uvSet == 1 ? 1 : 0];
+    if (!uv) return factor * luminance(Vec3(texture.sample(Vec2(0))));
+    const Vec2 a = uv[t.x], b = uv[t.y], c = uv[t.z];
+    const Vec2 size = glm::max(a, glm::max(b, c)) - glm::min(a, glm::min(b, c));
+    const float extent = std::max(size.x, size.y);
+    const Vec2 middle = (a + b + c) * (1.0f / 3.0f);
+    const auto filtered = [&](float width) {
+        return luminance(material.emission * Vec3(texture.sample(middle, width)));
+    };
+    return filtered(extent) + 0.05f * filtered(4 * extent) + 1e-4f * factor;
+}
+
+}  // namespace
+
+void Lights::build(const PosedScene& posed, const SceneTables& tables) {
+    tables_ = &tables;
+    environment_.build(posed.scene->environment);
+    entries_.clear(), triangles_.clear(), points_.clear(), suns_.clear();
+    Collected collected;
+    addTriangles(collected);
+    addBodies(collected);
+    addPoints(posed, collected);
+    finiteCount_ = static_cast<uint32_t>(entries_.size());
+    addInfinite(posed, collected);
+    picks_ = AliasTable(collected.weights);
+    tree_.build(collected.bounds);
+
+    hasEmitters_ = false;
+    for (const MaterialRecord& material : tables.materials) hasEmitters_ |= material.emits;
+    for (const BodyRecord& body : tables.bodies) hasEmitters_ |= body.instance != BodyRecord::kNone;
+    hittable_ = !environment_.black() || hasEmitters_;
+    for (const Sun& sun : suns_) hittable_ |= sun.oneMinusCos > 0;
+    hasDelta_ = !points_.empty();
+    for (const Sun& sun : suns_) hasDelta_ |= sun.oneMinusCos <= 0;
+    for (const BodyRecord& body : tables.bodies) hasDelta_ |= body.instance == BodyRecord::kNone;
+}
+
+namespace {
+
+LightBounds triangleBounds(const Vec3& corner, const Vec3& edge1, const Vec3& edge2, bool mirrored, bool bothSides,
+                           float intensity) {
+    LightBounds bounds;
+    for (const Vec3& p : {corner, corner + edge1, corner + edge2}) bounds.box.extend(p);
+    const Vec3 cross = glm::cross(edge1, edge2);
+    const float length = glm::length(cross);
+    if (length > 0) bounds.axis = cross * ((mirrored ? -1.0f : 1.0f) / length);
+    bounds.bothSides = bothSides;
+    bounds.intensity = intensity;
+    return bounds;
+}
+
+LightBounds bodyBounds(const LightShape& shape) {
+    LightBounds bounds;
+    if (shape.type == LightType::Sphere) {
+        bounds.box = {shape.centre - Vec3(shape.radius), shape.centre + Vec3(shape.radius)};
+        bounds.cosSpread = -1;
+        bounds.intensity = kPi * sqr(shape.radius) * luminance(shape.radiance);
+        return bounds;
+    }
+    const Vec3 x = glm::abs(shape.halfX), y = glm::abs(shape.halfY);
+    const Vec3 half = shape.type == LightType::Disk ? glm::sqrt(x * x + y * y) : x + y;
+    bounds.box = {shape.centre - half, shape.centre + half};
+    bounds.axis = shape.normal;
+    bounds.intensity = shape.area * luminance(shape.radiance);
+    return bounds;
+}
+
+}  // namespace
+
+void Lights::addTriangles(Collected& collected) {
+    const std::vector<InstanceRecord>& instances = tables_->instances;
+    firstTriangle_.assign(instances.size(), kNone);
+    // Rows of triangles that may emit, by instance.
+    size_t total = 0;
+    for (size_t i = 0; i < instances.size(); ++i) {
+        const InstanceRecord& r = instances[i];
+        if (r.body >= 0 || !r.positions) continue;
+        bool emits = !r.triangleMaterial && tables_->materials[r.material].emits;
+        if (r.triangleMaterial)
+            for (const MaterialRecord& m : tables_->materials) emits |= m.emits;
+        if (!emits) continue;
+        firstTriangle_[i] = static_cast<uint32_t>(total);
+        total += r.triangleCount;
+    }
+    triangleEntry_.assign(total, kNone);
+    std::vector<Triangle> all(total);
+    std::vector<float> intensity(total, 0);
+    for (size_t i = 0; i < instances.size(); ++i) {
+        if (firstTriangle_[i] == kNone) continue;
+        const InstanceRecord& r = instances[i];
+        parallelRanges(r.triangleCount, 1024, [&, i](int64_t begin, int64_t end) {
+            for (int64_t k = begin; k < end; ++k) {
+                const auto primitive = static_cast<uint32_t>(k);
+                const MaterialRecord& material = tables_->materials[r.materialOf(primitive)];
+                if (!material.emits) continue;
+                const UVec3 t = r.triangles[primitive];
+                Vec3 p[3] = {r.positions[t.x], r.positions[t.y], r.positions[t.z]};
+                if (!r.inWorld)
+                    for (Vec3& corner : p) corner = transformPoint(r.worldFromObject, corner);
+                Triangle& triangle = all[firstTriangle_[i] + primitive];
+                triangle = {p[0], p[1] - p[0], p[2] - p[0], static_cast<uint32_t>(i), primitive};
+                const float area = 0.5f * glm::length(glm::cross(triangle.edge1, triangle.edge2));
+                const float most = area * triangleLuminance(material, r, t);
+                intensity[firstTriangle_[i] + primitive] = most > 0 && std::isfinite(most) ? most : 0;
+            }
+        });
+    }
+    for (size_t k = 0; k < total; ++k) {
+        if (intensity[k] <= 0) continue;
+        triangleEntry_[k] = static_cast<uint32_t>(entries_.size());
+        entries_.push_back({Kind::Triangle, static_cast<uint32_t>(triangles_.size())});
+        triangles_.push_back(all[k]);
+        const Triangle& t = all[k];
+        const InstanceRecord& r = instances[t.instance];
+        const bool bothSides = tables_->materials[r.materialOf(t.primitive)].doubleSided;
+        collected.weights.push_back(kPi * intensity[k] * (bothSides ? 2 : 1));
+        collected.bounds.push_back(triangleBounds(t.corner, t.edge1, t.edge2, r.mirrored, bothSides, intensity[k]));
+    }
+}
+
+void Lights::addBodies(Collected& collected) {
+    firstBody_ = static_cast<uint32_t>(entries_.size());
+    for (size_t i = 0; i < tables_->bodies.size(); ++i) {
+        const LightShape& shape = tables_->bodies[i].shape;
+        entries_.push_back({Kind::Body, static_cast<uint32_t>(i)});
+        collected.weights.push_back(kPi * shape.area * luminance(shape.radiance));
+        collected.bounds.push_back(bodyBounds(shape));
+    }
+}
+
+void Lights::addPoints(const PosedScene& posed, Collected& collected) {
+    for (size_t i = 0; i < posed.scene->lights.size(); ++i) {
+        const Light& light = posed.scene->lights[i];
+        if (light.type != LightType::Point && light.type != LightType::Spot) continue;
+        const Mat4& frame = posed.lights[i].worldFromLight;
+        Point point{Vec3(frame[3]), glm::normalize(-Vec3(frame[2])), light.intensity * light.power, light.range, 0, 1};
+        LightBounds bounds{{point.position, point.position}, point.axis, -1, 0, false, luminance(point.intensity)};
+        float solidAngle = 4 * kPi;
+        if (light.type == LightType::Spot) {
+            // KHR_lights_punctual: smooth between the two cones, squared.
+            const float cosOuter = std::cos(radians(light.outerConeDeg));
+            const float cosInner = std::cos(radians(std::min(light.innerConeDeg, light.outerConeDeg)));
+            point.spotScale = 1 / std::max(1e-4f, cosInner - cosOuter);
+            point.spotOffset = -cosOuter * point.spotScale;
+            solidAngle = 2 * kPi * (1 - 0.5f * (cosInner + cosOuter));
+            bounds.cosSpread = 1;
+            bounds.cosReach = std::max(cosOuter - 1e-6f, 0.0f);
+        }
+        entries_.push_back({Kind::Point, static_cast<uint32_t>(points_.size())});
+        points_.push_back(point);
+        collected.weights.push_back(luminance(point.intensity) * solidAngle);
+        collected.bounds.push_back(bounds);
+    }
+}
+
+void Lights::addInfinite(const PosedScene& posed, Collected& collected) {
+    const float radius = std::max(posed.bounds.empty() ? 1.0f : posed.bounds.radius(), 1e-3f);
+    for (size_t i = 0; i < posed.scene->lights.size(); ++i) {
+        const Light& light = posed.scene->lights[i];
+        if (light.type != LightType::Directional) continue;
+        Sun sun;
+        sun.towards = glm::normalize(Vec3(posed.lights[i].worldFromLight[2]));
+        sun.irradiance = light.irradiance * light.power;
+        if (light.angleDeg > 0) {
+            const float half = std::min(radians(light.angleDeg) * 0.5f, kPi / 2);
+            sun.oneMinusCos = 2 * sqr(std::sin(half / 2));
+            sun.sine = std::sin(half);
+            // The irradiance of a cone of constant radiance L on a plane facing it is pi L sin^2.
+            sun.radiance = sun.irradiance / (kPi * sqr(sun.sine));
+        }
+        entries_.push_back({Kind::Directional, static_cast<uint32_t>(suns_.size())});
+        suns_.push_back(sun);
+        collected.weights.push_back(luminance(sun.irradiance) * kPi * sqr(radius));
+    }
+    if (environment_.black()) return;
+    // What the sky sends into a sphere around the scene.
+    entries_.push_back({Kind::Environment, 0});
+    collected.weights.push_back(environment_.meanLuminance() * 4 * kPi * kPi * sqr(radius));
+}
+
+}  // namespace lumi
