@@ -9,7 +9,7 @@
 #include "base/files.h"
 #include "image/hdr.h"
 #include "reconstruct/catalog.h"
-#include "session/renaming_visitor.h"
+#include "params/renaming_visitor.h"
 
 namespace lumi {
 namespace {
