@@ -1,0 +1,52 @@
+#pragma once
+#include "filter/edge_stopping.h"
+
+namespace lumi {
+
+/// Planes of one illumination component (direct or indirect) at one level of the wavelet transform.
+struct IlluminationView {
+    const float* rgb[3];
+    const float* luminance;
+    const float* sampleVariance;  ///< of luminance
+};
+struct IlluminationOutput {
+    float* rgb[3];
+    float* luminance;
+    float* sampleVariance;
+};
+
+/// One row of one level for up to two components that share their geometric weights.
+struct AtrousRow {
+    static constexpr int kMaxComponents = 2;
+    int width = 0, height = 0, y = 0;
+    int step = 1;  ///< pixels between the kernel's taps, 2^level
+    const float* inverseDepth = nullptr;
+    const float* slopeX = nullptr;
+    const float* slopeY = nullptr;
+    const float* normal[3] = {nullptr, nullptr, nullptr};
+    EdgeStopping edges;
+    int components = 1;
+    IlluminationView in[kMaxComponents];
+    /// log2(e) / (sigma_l sqrt(g3x3(Var) + epsilon)) of the row's pixels, one array a component.
+    const float* luminanceScale[kMaxComponents] = {nullptr, nullptr};
+    IlluminationOutput out[kMaxComponents];
+};
+
+struct AtrousKernels {
+    /// Eq. 1 and the variance of its result, with the weights of eqs. 2 to 5 [Schied17].
+    void (*filterRow)(const AtrousRow& row);
+    /// `scale[x]` = log2(e) / (sigmaLuminance sqrt(v + epsilon)), v = the variance at (x, y), blurred by the 3x3
+    /// Gaussian (borders repeat) if `prefilter`.
+    void (*luminanceScaleRow)(const float* variance, int width, int height, int y, float sigmaLuminance, bool prefilter,
+                              float* scale);
+    /// Rec. 709 luminance of a row.
+    void (*luminanceRow)(const float* const rgb[3], float* out, int width);
+    /// Variance of luminance over a 7x7 window weighted by depth and normals (sec. 4.2), where historyLength < minLength;
+    /// elsewhere `variance`, the output row, stays. `mean` and `centred` are planes of first and second centred moments.
+    void (*spatialVarianceRow)(const AtrousRow& row, const float* historyLength, float minLength, const float* mean,
+                               const float* centred, float* variance);
+};
+
+const AtrousKernels& atrousKernels();
+
+}  // namespace lumi

@@ -1,0 +1,33 @@
+#pragma once
+#include "frame/signals.h"
+
+namespace lumi {
+
+/// The lighting of one frame as SVGF and its relatives filter it [Schied17, sec. 3]: untextured direct and indirect
+/// illumination, each divided by the first surface's albedo, and what passes around the filter.
+///
+/// The albedo is the sum of the lobes' directional albedos, which is what the paper's "per-layer albedos, weighted by
+/// their sampling probability" comes to when lobes are chosen in proportion to theirs; a channel of a lobe that the
+/// signals store undivided (frame/signals.h: below 0.01, albedo 1) does not count beside one that is not. It is at least
+/// 0.01, so that no division blows up.
+struct DemodulatedFrame {
+    Image emission;   ///< RGB; light that reaches the camera unscattered, emitters and sky
+    Image albedo;     ///< RGB in [0.01, 1]
+    Image direct;     ///< RGB, demodulated
+    Image indirect;   ///< RGB, demodulated
+    Image dropped;    ///< Y, 1 where a value of the input was not finite and stands as 0
+    int64_t droppedPixels = 0;
+};
+
+/// What demodulate() reads.
+inline SignalSet demodulationSignals() {
+    return {Signal::Emission, Signal::Albedo, Signal::SpecularAlbedo, Signal::Direct, Signal::Indirect};
+}
+
+/// Replaces NaN and infinity by 0 and counts them; what comes out is finite everywhere.
+void demodulate(const Signals& signals, DemodulatedFrame& frame);
+
+/// out = emission + albedo * (direct + indirect); `indirect` may be null. `out` is RGB of the frame's extent.
+void remodulate(const DemodulatedFrame& frame, const Image& direct, const Image* indirect, Image& out);
+
+}  // namespace lumi

@@ -1,0 +1,79 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "frame/signals.h"
+#include "params/parameter.h"
+
+namespace lumi {
+
+/// Where a pixel's surface point was on the previous frame's screen, and which of that frame's pixels saw the same
+/// surface [Schied17, sec. 4.1].
+struct ReprojectionSettings {
+    float depthTolerance = 0.02f;    ///< relative, beside what the surface's own slope explains
+    float normalToleranceDeg = 30;   ///< between object-space normals
+    bool wideFallback = true;        ///< try 3x3 where all of 2x2 fail
+
+    void describe(ParameterVisitor& v);
+};
+
+/// The geometry of a frame that later frames are tested against.
+struct SurfaceRecord {
+    Image inverseDepth;  ///< 1 channel, 1/m
+    Image objectNormal;  ///< 3 channels
+    IdImage objectId;
+
+    void copyFrom(const Signals& signals);
+    size_t bytes() const { return inverseDepth.bytes() + objectNormal.bytes() + objectId.bytes(); }
+};
+
+/// What reprojection reads.
+inline SignalSet reprojectionSignals() {
+    return {Signal::Depth, Signal::DepthGradient, Signal::InverseDepth, Signal::ObjectNormal, Signal::ObjectId, Signal::Motion};
+}
+
+/// Why a tap is refused; several may hold at once.
+enum TapRefusal : uint8_t {
+    kTapKept = 0,
+    kTapOffScreen = 1,
+    kTapOtherObject = 2,
+    kTapDepth = 4,
+    kTapNormal = 8,
+    kTapUnused = 16  ///< its bilinear weight is 0
+};
+
+/// The taps of the previous frame that make up a pixel's history, at most nine, with weights that sum to 1.
+struct ReprojectedTaps {
+    int count = 0;               ///< 0: disocclusion
+    bool wide = false;           ///< found by the 3x3 fall-back
+    std::array<int32_t, 9> index{};  ///< y * width + x
+    std::array<float, 9> weight{};
+    std::array<uint8_t, 4> refusals{};  ///< of the 2x2 taps: (0,0) (1,0) (0,1) (1,1)
+    int x0 = 0, y0 = 0;          ///< of tap (0,0)
+};
+
+/// Tests one frame's pixels against the previous frame's.
+class Reprojection {
+public:
+    /// `signals` has reprojectionSignals(); both must outlive this. `previous` has the same extent.
+    Reprojection(const Signals& signals, const SurfaceRecord& previous, const ReprojectionSettings& settings);
+    /// 2x2 bilinear taps, each tested for depth, object-space normal and object; a refused tap's weight is spread
+    /// uniformly over the others. If none is left, the pixels of 3x3 around the point that pass, in equal parts. The sky has none.
+    ReprojectedTaps taps(int x, int y) const;
+
+private:
+    struct Point;
+    uint8_t refusal(const Point& point, int x, int y) const;
+
+    const Signals& signals_;
+    const SurfaceRecord& previous_;
+    ReprojectionSettings settings_;
+    Extent2 extent_;
+    float normalCosine_;
+};
+
+/// Verdicts as a picture: 0 sky, 1 whole history, 2 part of the taps refused, 3 the 3x3 fall-back, 4 + the common
+/// refusals of all taps where history was lost (5 off screen, 6 other object, 8 depth, 12 normal, and sums of them).
+float verdictValue(const ReprojectedTaps& taps, bool sky);
+
+}  // namespace lumi

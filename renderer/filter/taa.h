@@ -1,0 +1,36 @@
+#pragma once
+#include <stop_token>
+
+#include "frame/signals.h"
+#include "params/parameter.h"
+
+namespace lumi {
+
+/// Temporal antialiasing after [Karis14], with variance clipping [Salvi16] in YCoCg: the history is fetched along the
+/// motion of the nearest surface in 3x3, through a Catmull-Rom filter, and clipped to mean +- gamma standard deviations
+/// of the 3x3 neighbourhood; then an exponential average. All of it works on colours compressed by c / (1 + luma), so that
+/// a bright sample does not outshine its neighbours; what comes out is scene-linear again.
+///
+/// Differs from the talk: the history's box comes from the moments in place of minimum and maximum; the jittered sample
+/// is not weighted by its distance from the pixel's centre, the average over frames is the pixel's box filter.
+struct TaaSettings {
+    enum class History { Bilinear, CatmullRom };
+
+    float alpha = 0.1f;
+    float gamma = 1.0f;
+    bool clip = true;
+    History history = History::CatmullRom;
+
+    void describe(ParameterVisitor& v);
+};
+
+/// What antialiasTemporally() reads.
+inline SignalSet taaSignals() { return {Signal::Motion, Signal::InverseDepth}; }
+
+/// `colour` (RGB, scene-linear) with `previous` (the last frame's `next`, or null) into `next` (compressed, what the next
+/// frame needs) and `out` (scene-linear; may be `colour`). What is not finite counts as 0 and does not reach a
+/// neighbour's history. Returns false if stopped; outputs are then undefined.
+bool antialiasTemporally(const Signals& signals, const TaaSettings& settings, const Image& colour, const Image* previous,
+                         Image& next, Image& out, std::stop_token stop);
+
+}  // namespace lumi
