@@ -5,6 +5,9 @@
 #include "base/error.h"
 #include "reconstruct/accumulate/accumulate.h"
 #include "reconstruct/none/none.h"
+#include "reconstruct/svgf/svgf.h"
+#include "reconstruct/taa/taa.h"
+#include "reconstruct/temporal/temporal.h"
 
 namespace lumi {
 namespace {
@@ -18,6 +21,9 @@ std::vector<ModuleEntry>& catalog() {
     static std::vector<ModuleEntry> entries{
         {"none", "Raw frame", "", make<NoneModule>},
         {"accumulate", "Progressive mean", "", make<AccumulateModule>},
+        {"svgf", "Spatiotemporal variance-guided filtering", "Schied17", make<SvgfModule>},
+        {"temporal", "Temporal accumulation", "Schied17", make<TemporalModule>},
+        {"taa", "Temporal antialiasing", "Karis14", make<TaaModule>},
     };
     return entries;
 }

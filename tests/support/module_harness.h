@@ -26,11 +26,13 @@ public:
         tracer_.bind(posed_);
     }
 
-    /// Every signal of frame `number`; the camera stands `shift` metres to the right of the scene's own.
-    Signals trace(FrameNumber number, float shift = 0, Jitter jitter = Jitter::PerPixel) {
+    /// Every signal of frame `number`; the camera stands `shift` metres to the right of the scene's own, and stood
+    /// `previousShift` to the right of it a frame earlier.
+    Signals trace(FrameNumber number, float shift, float previousShift, Jitter jitter = Jitter::PerPixel) {
         FrameSampling sampling;
         sampling.extent = extent_;
-        sampling.camera = sampling.previousCamera = camera(shift);
+        sampling.camera = camera(shift);
+        sampling.previousCamera = camera(previousShift);
         sampling.frame = static_cast<uint32_t>(number);
         sampling.samplesPerPixel = spp_;
         sampling.firstSample = static_cast<uint64_t>(number) * static_cast<uint64_t>(spp_);
@@ -39,6 +41,11 @@ public:
         Signals signals;
         EXPECT_TRUE(tracer_.sample(sampling, signals));
         return signals;
+    }
+
+    /// The same without motion.
+    Signals trace(FrameNumber number, float shift = 0, Jitter jitter = Jitter::PerPixel) {
+        return trace(number, shift, shift, jitter);
     }
 
     CameraPose camera(float shift = 0) const {

@@ -1,0 +1,25 @@
+#pragma once
+#include "filter/taa.h"
+#include "frame/history.h"
+#include "reconstruct/module.h"
+
+namespace lumi {
+
+/// Temporal antialiasing alone, on the raw frame [Karis14]; see filter/taa.h.
+class TaaModule : public Module {
+public:
+    SignalSet reads() const override { return SignalSet{Signal::Noisy} | taaSignals(); }
+    Jitter preferredJitter() const override { return Jitter::PerFrame; }
+    void describe(ParameterVisitor& v) override { settings_.describe(v); }
+    void resize(Extent2 extent) override;
+    void forget() override { history_.clear(); }
+    RunResult run(const FrameContext&, Image& out) override;
+    size_t byteCount() const override;
+
+private:
+    Extent2 extent_;
+    TaaSettings settings_;
+    FrameHistory<Image> history_;
+};
+
+}  // namespace lumi
