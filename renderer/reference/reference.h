@@ -44,12 +44,15 @@ struct ReferenceProgress {
     bool waiting = false;              ///< another process makes the same reference
 };
 
+class BlockTeam;
+
 struct ReferenceOptions {
     /// Where references are kept; empty: nothing is kept. See defaultReferenceCache().
     std::filesystem::path cache;
     MessageLog* log = nullptr;  ///< damaged and foreign cache files are named here
     std::function<void(const ReferenceProgress&)> progress{};  ///< called after every block of samples, on the calling thread
     std::stop_token stop{};
+    BlockTeam* team = nullptr;  ///< other processes that trace blocks of samples (block_team.h); null: this one alone
 };
 
 /// A converged image and what is known of its noise.
@@ -62,8 +65,8 @@ struct Reference {
     Image standardError;  ///< of each pixel's luminance, from 16 to 31 blocks of samples; empty below 256 samples
     Image depth;          ///< Z, linear view depth of each pixel's first sample; +inf on the sky
     uint64_t samples = 0;
-    /// Root of the mean over pixels of (standard error)^2 / (luminance^2 + 0.001), the square of which is about the
-    /// reference's own part in relMSE; NaN below 256 samples.
+    /// Relative standard error: root of the mean over pixels of (standard error)^2 / (luminance^2 + 0.001); NaN below 256
+    /// samples. relMSE adds three channels up, so the reference's own part in it is about three times the square.
     double error = 0;
     bool cached = false;         ///< nothing had to be traced
     std::filesystem::path file;  ///< where it is kept; empty without a cache

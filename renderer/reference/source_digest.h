@@ -1,0 +1,11 @@
+#pragma once
+
+namespace lumi {
+
+/// Digest of the sources that decide what a sample is worth: base, math, image, params, scene, frame, trace; made by
+/// digest_sources.cmake when they are built.
+extern const char* const kSourceDigest;
+/// Compiler and Embree of this build.
+extern const char* const kToolchain;
+
+}  // namespace lumi
