@@ -68,6 +68,8 @@ public:
         app_.get_formatter()->column_width(34);
         addWindow();
         addRender();
+        addReference();
+        addMerge();
         addCompare();
         addBench();
         addInfo();
@@ -126,11 +128,63 @@ private:
         app->add_option("--buffers", render.buffers, "Layers to add to .exr files, as `list buffers` names them, or all")
             ->type_name("NAME,...");
         app->add_flag("--half", render.half, "Store colours of .exr files as half");
-        app->add_option("--progress", progress_, "auto (if standard error is a terminal), always or never")
-            ->type_name("WHEN")
-            ->check(CLI::IsMember({"auto", "always", "never"}).description(""));
+        addProgress(*app);
         addMachine(*app, line_.machine, true);
         app->footer(renderFooter);
+    }
+
+    void addReference() {
+        CLI::App* app = reference_ = app_.add_subcommand("reference", "Converge an image, kept and resumable");
+        ReferenceCommand& reference = line_.reference;
+        app->add_option("scene", reference.scene.scene, "Scene to render: a name or a path")->required()->type_name("SCENE");
+        addShared(*app, referenceText_, reference.scene);
+        app->get_option("--spp")->description("Samples a pixel (1024)");
+        app->get_option("--module")->description("accumulate, which is what converges");
+        app->add_option("--error", reference.error,
+                        "Instead of --spp: go on until the relative standard error is at most this")
+            ->type_name("E")
+            ->check(CLI::Range(1e-6, 1e3).description(""))
+            ->excludes("--spp")
+            ->take_last();
+        app->add_option("--samples", samples_, "Only the sums of samples A to B-1, multiples of 16, for `merge`")
+            ->type_name("A..B")
+            ->excludes("--error")
+            ->take_last();
+        app->add_option("--frames", referenceFrames_, "A reference for each of frames 0..N-1, or A..B without B (1)")
+            ->type_name("N|A..B")
+            ->take_last();
+        app->add_option("--out", reference.out,
+                        "File to write: .exr or .png, %04d is the frame number; repeatable (<scene>.reference.exr, a free name)")
+            ->type_name("PATH")
+            ->expected(1)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        app->add_option("--buffers", reference.buffers, "Signals to add to .exr files as layers, or all")->type_name("NAME,...");
+        app->add_flag("--half", reference.half, "Store colours of .exr files as half");
+        addProgress(*app);
+        addMachine(*app, line_.machine, true);
+        app->footer(referenceFooter());
+    }
+
+    void addMerge() {
+        CLI::App* app = merge_ = app_.add_subcommand("merge", "Add up parts that `reference --samples` wrote");
+        app->add_option("parts", line_.merge.parts, "Parts whose samples follow each other, in any order")
+            ->required()
+            ->type_name("PART...");
+        app->add_option("--out", line_.merge.out, "Image (.exr, .png), or a larger part (.lumiref)")
+            ->required()
+            ->type_name("FILE")
+            ->take_last();
+        addMachine(*app, line_.machine, true);
+        app->footer("Example:\n  lumiscope merge a.lumiref b.lumiref --out cornell.exr");
+    }
+
+    void addProgress(CLI::App& app) {
+        app.add_option("--progress", progress_, "auto (if standard error is a terminal), always or never")
+            ->type_name("WHEN")
+            ->check(CLI::IsMember({"auto", "always", "never"}).description(""));
+    }
+    Progress progress() const {
+        return progress_ == "always" ? Progress::Always : progress_ == "never" ? Progress::Never : Progress::Auto;
     }
 
     void addCompare() {
@@ -207,6 +261,8 @@ private:
 
     CommandLine finished() {
         if (render_->parsed()) finishRender();
+        else if (reference_->parsed()) finishReference();
+        else if (merge_->parsed()) line_.command = Command::Merge;
         else if (compare_->parsed()) finishCompare();
         else if (bench_->parsed()) line_.command = Command::Bench;
         else if (info_->parsed()) finishInfo();
@@ -225,7 +281,7 @@ private:
         if (!frames_.empty()) render.frames = parseFrames(frames_);
         if (!warmUp_.empty()) render.warmUp = parseWhole(warmUp_, "--warm-up", "a number of frames", 0);
         checkTime(render);
-        render.progress = progress_ == "always" ? Progress::Always : progress_ == "never" ? Progress::Never : Progress::Auto;
+        render.progress = progress();
         if (render.scene.scene.empty() && render.replay.empty())
             throwUsage({"render needs a scene", "", "lumiscope render SCENE, or --replay FILE", ""});
         if (!render.replay.empty() && (!render.scene.values.empty() || !frames_.empty() || !warmUp_.empty() ||
@@ -243,6 +299,23 @@ private:
         for (const TypedValue& value : render.scene.values)
             if (value.id == "time")
                 throwUsage({"the number of a frame gives its time", value.option, "time only without --frames", ""});
+    }
+
+    void finishReference() {
+        line_.command = Command::Reference;
+        ReferenceCommand& reference = line_.reference;
+        addValues(referenceText_, reference.scene);
+        for (const std::string& module : reference.scene.modules)
+            if (module != "accumulate")
+                throwUsage({"a reference is the mean of its samples", "--module", "accumulate", '"' + module + '"'});
+        if (!referenceFrames_.empty()) reference.frames = parseFrames(referenceFrames_);
+        reference.progress = progress();
+        if (samples_.empty()) return;
+        reference.samples = parseSamples(samples_, "--samples");
+        if (reference.frames.end - reference.frames.begin > 1)
+            throwUsage({"a part is one of one image", "--samples", "one frame", ""});
+        if (!referenceText_.spp.empty() || !reference.buffers.empty())
+            throwUsage({"a part holds just its samples", "--samples", "no --spp and no --buffers beside it", ""});
     }
 
     void finishCompare() {
@@ -270,11 +343,12 @@ private:
     }
 
     CLI::App app_;
-    CLI::App *render_ = nullptr, *compare_ = nullptr, *bench_ = nullptr, *info_ = nullptr, *list_ = nullptr, *view_ = nullptr;
+    CLI::App *render_ = nullptr, *reference_ = nullptr, *merge_ = nullptr, *compare_ = nullptr, *bench_ = nullptr,
+             *info_ = nullptr, *list_ = nullptr, *view_ = nullptr;
     CommandLine line_;
-    SharedText windowText_, renderText_, infoText_, viewText_;
+    SharedText windowText_, renderText_, referenceText_, infoText_, viewText_;
     SceneOptions viewScene_;
-    std::string infoScene_, metrics_, crop_, frames_, warmUp_, progress_ = "auto", windowSize_;
+    std::string infoScene_, samples_, referenceFrames_, metrics_, crop_, frames_, warmUp_, progress_ = "auto", windowSize_;
     bool offscreen_ = false;
 };
 

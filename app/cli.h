@@ -45,17 +45,35 @@ struct RenderOptions {
     Progress progress = Progress::Auto;
 };
 
+struct ReferenceCommand {
+    SceneOptions scene;
+    FrameRange frames;
+    double error = 0;  ///< above 0: converge to this instead of to a number of samples
+    std::optional<std::pair<uint64_t, uint64_t>> samples;  ///< half-open: only the sums of these
+    std::vector<std::string> out;
+    std::string buffers;
+    bool half = false;
+    Progress progress = Progress::Auto;
+};
+
+struct MergeCommand {
+    std::vector<std::string> parts;
+    std::string out;
+};
+
 struct ListOptions {
     std::string what;    ///< scenes, modules, buffers, parameters, metrics
     std::string module;  ///< only what belongs to it
 };
 
-enum class Command { Window, Render, Compare, Bench, Info, List, View, PrintAndExit };
+enum class Command { Window, Render, Reference, Merge, Compare, Bench, Info, List, View, PrintAndExit };
 
 struct CommandLine {
     Command command = Command::Window;
     MachineOptions machine;
     RenderOptions render;   ///< Render
+    ReferenceCommand reference;  ///< Reference
+    MergeCommand merge;     ///< Merge
     CompareOptions compare; ///< Compare
     SceneOptions scene;     ///< Window, Info, View
     bool check = false;     ///< Info

@@ -40,6 +40,7 @@ std::string mainFooter() {
            "  lumiscope                                    the window, on the built-in atrium\n"
            "  lumiscope room                               the window, on another scene\n"
            "  lumiscope render cornell --spp 64 --out cornell.exr --out cornell.png\n"
+           "  lumiscope reference cornell --spp 4096 --out reference.exr\n"
            "  lumiscope compare cornell.exr reference.exr  how far one image is from another\n"
            "  lumiscope list parameters                    everything that --set knows\n"
            "  lumiscope list metrics                       everything that compare measures\n\n" +
@@ -66,6 +67,21 @@ std::string benchFooter() {
            "trace/embree-pathtracer: Mray/s; the limit is Embree's own path tracer (Debian's embree-tools).\n"
            "load, build: seconds to read a scene and to make it ready for rays. memory: peak of loading and rendering;\n"
            "the limit is twice what scene and tracer hold. Sponza is measured where $LUMISCOPE_ASSETS holds it.\n";
+}
+
+std::string referenceFooter() {
+    return "Examples:\n"
+           "  lumiscope reference cornell --spp 4096 --out cornell.exr\n"
+           "  lumiscope reference room --error 0.02 --camera main --out room.exr\n"
+           "  lumiscope reference parade --frames 0..60 --fps 30 --spp 512 --buffers motion --out ref.%04d.exr\n"
+           "  lumiscope reference cornell --samples 0..2048 --out a.lumiref      on one machine\n"
+           "  lumiscope reference cornell --samples 2048..4096 --out b.lumiref   on another, then\n"
+           "  lumiscope merge a.lumiref b.lumiref --out cornell.exr              gives the same bytes\n\n"
+           "The relative standard error is the root of the mean over pixels of (standard error of luminance)^2 /\n"
+           "(luminance^2 + 0.001), measured at four steps an octave from 256 samples on.\n"
+           "References are kept in $XDG_CACHE_HOME/lumiscope/references, else ~/.cache/lumiscope/references. What was\n"
+           "interrupted goes on from there; delete the folder to have the space back.\n\n" +
+           sceneList() + "\n" + kExitCodes;
 }
 
 std::string compareFooter() {

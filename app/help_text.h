@@ -10,5 +10,6 @@ std::string mainFooter();
 std::string renderFooter();
 std::string benchFooter();
 std::string compareFooter();
+std::string referenceFooter();
 
 }  // namespace lumi

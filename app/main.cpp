@@ -1,12 +1,10 @@
-#include <signal.h>
-#include <unistd.h>
-
 #include <cstdio>
-#include <thread>
 
 #include "app/bench_command.h"
 #include "app/cli.h"
 #include "app/commands.h"
+#include "app/interrupt_guard.h"
+#include "app/reference_command.h"
 #include "app/view.h"
 #include "app/window.h"
 #include "base/error.h"
@@ -14,38 +12,6 @@
 
 namespace lumi {
 namespace {
-
-/// Turns the first interrupt of a command into a stop request; the second ends the program at once.
-class InterruptGuard {
-public:
-    InterruptGuard() {
-        sigemptyset(&signals_);
-        for (const int signal : {SIGINT, SIGTERM, kWake}) sigaddset(&signals_, signal);
-        pthread_sigmask(SIG_BLOCK, &signals_, nullptr);  // before other threads begin, so that they inherit it
-        thread_ = std::jthread([this](std::stop_token ends) {
-            while (!ends.stop_requested()) {
-                int signal = 0;
-                if (sigwait(&signals_, &signal) != 0 || signal == kWake) continue;
-                if (stop_.stop_requested()) _exit(static_cast<int>(ErrorKind::Interrupted));
-                stop_.request_stop();
-            }
-        });
-    }
-    ~InterruptGuard() {
-        thread_.request_stop();
-        pthread_kill(thread_.native_handle(), kWake);
-    }
-    InterruptGuard(const InterruptGuard&) = delete;
-    InterruptGuard& operator=(const InterruptGuard&) = delete;
-    std::stop_token token() const { return stop_.get_token(); }
-
-private:
-    static constexpr int kWake = SIGUSR1;  ///< ends the wait of our own thread
-
-    sigset_t signals_;
-    std::stop_source stop_;
-    std::jthread thread_;
-};
 
 StartOptions startOptions(const SceneOptions& options) {
     StartOptions start;
@@ -89,6 +55,11 @@ int runCommand(const CommandLine& line) {
             InterruptGuard interrupt;
             return runBenchCommand(line.filter, line.machine, log, interrupt.token());
         }
+        case Command::Reference: {
+            InterruptGuard interrupt;
+            return runReference(line.reference, line.machine, log, interrupt.token());
+        }
+        case Command::Merge: return runMerge(line.merge, line.machine);
         case Command::Info: {
             InterruptGuard interrupt;
             return runInfo(line.scene, line.check, line.machine, log, interrupt.token());

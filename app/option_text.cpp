@@ -43,6 +43,17 @@ FrameRange parseFrames(const std::string& text) {
     return range;
 }
 
+std::pair<uint64_t, uint64_t> parseSamples(const std::string& text, const std::string& option) {
+    const char* expected = "A..B with A < B, multiples of 16, as 0..1024";
+    const size_t dots = text.find("..");
+    if (dots == std::string::npos) throwUsage({"not understood", option, expected, '"' + text + '"'});
+    const int64_t begin = parseWhole(text.substr(0, dots), option, expected, 0);
+    const int64_t end = parseWhole(text.substr(dots + 2), option, expected, 0);
+    if (begin >= end || begin % 16 != 0 || end % 16 != 0) throwUsage({"not understood", option, expected, '"' + text + '"'});
+    if (end > 65536) throwUsage({"too many samples", option, "at most 65536", '"' + text + '"'});
+    return {static_cast<uint64_t>(begin), static_cast<uint64_t>(end)};
+}
+
 std::vector<std::string> splitList(const std::string& text) {
     std::vector<std::string> parts;
     for (size_t begin = 0; !text.empty() && begin <= text.size();) {

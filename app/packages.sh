@@ -13,6 +13,7 @@ build_packages=(
 test_packages=(
     python3 python3-xlib python3-jsonschema xvfb xauth xdotool x11-utils imagemagick git
     embree-tools
+    libopenmpi-dev openmpi-bin
 )
 
 install_packages() {

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <span>
 #include <stop_token>
 
 #include "reference/reference.h"
@@ -41,6 +42,8 @@ public:
     /// stopped; then `take` got those before the first that is not whole.
     virtual bool trace(BlockTracer& own, std::span<const SampleRange> ranges,
                        const std::function<void(SampleBlock)>& take, std::stop_token stop) = 0;
+    /// The present image is done with; what comes is of another tracer.
+    virtual void nextImage() = 0;
 };
 
 }  // namespace lumi

@@ -188,8 +188,6 @@ bool plausible(const Head& head) {
     return true;
 }
 
-int scatterChannels(const SampleBlock& block) { return std::min(block.level(), SampleBlock::kScatterDepths); }
-
 }  // namespace
 
 void writeReferenceFile(const fs::path& path, const ReferenceState& state) {
@@ -222,15 +220,13 @@ ReferenceState readReferenceFile(const fs::path& path) {
     for (const SampleRange& range : head.blocks) {
         const SampleBlock block{range.begin, range.count(), {}, {}, {}};
         expected += pixels * (3 * sizeof(double) + (block.level() > 0 ? 3 * sizeof(float) : 0) +
-                              static_cast<uint64_t>(scatterChannels(block)) * sizeof(float));
+                              static_cast<uint64_t>(std::min(block.level(), SampleBlock::kScatterDepths)) * sizeof(float));
     }
     if (reader.left() != expected) throwDamaged(path, "its length is wrong");
     checkMemory("reading " + path.string(), expected);
     std::vector<SampleBlock> blocks;
     for (const SampleRange& range : head.blocks) {
-        SampleBlock block{range.begin, range.count(), ImageOf<double>(state.extent, 3), {}, {}};
-        if (block.level() > 0) block.left.reset(state.extent, 3);
-        block.scatter.reset(state.extent, scatterChannels(block));
+        SampleBlock block = SampleBlock::shaped(range, state.extent);
         reader.read(block.sum);
         reader.read(block.left);
         reader.read(block.scatter);

@@ -74,6 +74,13 @@ struct Scatter {
 
 int SampleBlock::level() const { return std::countr_zero(count / kLeafSamples); }
 
+SampleBlock SampleBlock::shaped(SampleRange range, Extent2 extent) {
+    SampleBlock block{range.begin, range.count(), ImageOf<double>(extent, 3), {}, {}};
+    if (block.level() > 0) block.left.reset(extent, 3);
+    block.scatter.reset(extent, std::min(block.level(), kScatterDepths));
+    return block;
+}
+
 uint64_t sampleBlockBytes(Extent2 extent) {
     return static_cast<uint64_t>(extent.area()) *
            (3 * sizeof(double) + 3 * sizeof(float) + SampleBlock::kScatterDepths * sizeof(float));

@@ -28,6 +28,9 @@ struct SampleBlock {
     /// channels as there are levels below, kScatterDepths at most.
     Image scatter;
 
+    /// A block of zeros with the planes that one of this range has.
+    static SampleBlock shaped(SampleRange range, Extent2 extent);
+
     uint64_t end() const { return first + count; }
     int level() const;  ///< 0 for a leaf
     size_t bytes() const { return sum.bytes() + left.bytes() + scatter.bytes(); }
