@@ -19,11 +19,6 @@ float angleBetween(const Vec3& a, const Vec3& b) {
     return lengths > 0 ? std::acos(std::clamp(glm::dot(a, b) / lengths, -1.0f, 1.0f)) : 0;
 }
 
-Vec3 anyPerpendicular(const Vec3& n) {
-    const Vec3 axis = std::abs(n.x) < 0.6f ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-    return glm::normalize(glm::cross(axis, n));
-}
-
 void requireLength(size_t length, size_t vertices, const char* attribute, const std::string& where) {
     if (length != 0 && length != vertices)
         throwBadInput({.what = std::string("the attribute ") + attribute + " has another length than the positions",
@@ -101,40 +96,6 @@ void computeNormals(Mesh& mesh) {
     for (Vec3& normal : mesh.normals) {
         const float length = glm::length(normal);
         normal = length > 0 ? normal / length : Vec3(0, 1, 0);
-    }
-}
-
-void computeTangents(Mesh& mesh, int uvSet) {
-    if (mesh.normals.empty()) computeNormals(mesh);
-    const std::vector<Vec2>& uv = mesh.uv[uvSet];
-    std::vector<Vec3> tangents(mesh.positions.size(), Vec3(0)), bitangents(mesh.positions.size(), Vec3(0));
-    for (const UVec3& t : mesh.triangles) {
-        if (uv.empty()) break;
-        const Vec3 p[3] = {mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
-        const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0];
-        const Vec2 d1 = uv[t.y] - uv[t.x], d2 = uv[t.z] - uv[t.x];
-        const float area = d1.x * d2.y - d1.y * d2.x;
-        if (area == 0 || !std::isfinite(area)) continue;
-        // Only directions matter: the sign of the area stands for the division by it.
-        const Vec3 along = (e1 * d2.y - e2 * d1.y) * std::copysign(1.0f, area);
-        const Vec3 across = (e2 * d1.x - e1 * d2.x) * std::copysign(1.0f, area);
-        const float alongLength = glm::length(along), acrossLength = glm::length(across);
-        if (!(alongLength > 0) || !(acrossLength > 0)) continue;
-        for (int c = 0; c < 3; ++c) {
-            const float angle = angleBetween(p[(c + 1) % 3] - p[c], p[(c + 2) % 3] - p[c]);
-            tangents[t[c]] += along / alongLength * angle;
-            bitangents[t[c]] += across / acrossLength * angle;
-        }
-    }
-    mesh.tangents.resize(mesh.positions.size());
-    for (size_t i = 0; i < mesh.positions.size(); ++i) {
-        const Vec3& n = mesh.normals[i];
-        const Vec3 t = tangents[i] - n * glm::dot(n, tangents[i]);
-        const float length = glm::length(t);
-        const Vec3 unit = length > 1e-12f ? t / length : anyPerpendicular(n);
-        // glTF's bitangent, cross(normal, tangent) * w, points up in the image: against v, which grows downwards.
-        const float handedness = glm::dot(glm::cross(n, unit), bitangents[i]) > 0 ? -1.0f : 1.0f;
-        mesh.tangents[i] = Vec4(unit, handedness);
     }
 }
 

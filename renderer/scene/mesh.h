@@ -52,7 +52,7 @@ void checkMesh(const Mesh& mesh, const std::string& where);
 /// Unit vertex normals, weighted by angle; degenerate triangles do not count. Overwrites mesh.normals.
 void computeNormals(Mesh& mesh);
 
-/// Per-vertex tangents from uv set `uvSet`, orthogonal to the normals. Overwrites mesh.tangents.
+/// Tangents for uv set `uvSet` [Mikkelsen 2008], splitting vertices whose corners disagree. Overwrites mesh.tangents.
 void computeTangents(Mesh& mesh, int uvSet = 0);
 
 }  // namespace lumi

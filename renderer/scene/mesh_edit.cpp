@@ -25,28 +25,6 @@ void forEachAttribute(M& mesh, const Visit& visit) {
     }
 }
 
-/// New vertex i is old vertex source[i].
-void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& source) {
-    forEachAttribute(mesh, [&](auto& values) {
-        if (values.empty()) return;
-        std::remove_reference_t<decltype(values)> gathered;
-        gathered.reserve(source.size());
-        for (const uint32_t i : source) gathered.push_back(values[i]);
-        values = std::move(gathered);
-    });
-    if (mesh.skin.empty()) return;
-    SkinWeights gathered;
-    gathered.first.push_back(0);
-    for (const uint32_t i : source) {
-        for (uint32_t k = mesh.skin.first[i]; k < mesh.skin.first[i + 1]; ++k) {
-            gathered.joint.push_back(mesh.skin.joint[k]);
-            gathered.weight.push_back(mesh.skin.weight[k]);
-        }
-        gathered.first.push_back(static_cast<uint32_t>(gathered.joint.size()));
-    }
-    mesh.skin = std::move(gathered);
-}
-
 /// Appends `from` to `to`, filling whichever is absent with `fill` if the merged mesh has the attribute at all.
 template <class T>
 void append(std::vector<T>& to, size_t before, const std::vector<T>& from, size_t count, const T& fill) {
@@ -100,6 +78,27 @@ void appendMesh(Mesh& to, const Mesh& from) {
 }
 
 }  // namespace
+
+void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& source) {
+    forEachAttribute(mesh, [&](auto& values) {
+        if (values.empty()) return;
+        std::remove_reference_t<decltype(values)> gathered;
+        gathered.reserve(source.size());
+        for (const uint32_t i : source) gathered.push_back(values[i]);
+        values = std::move(gathered);
+    });
+    if (mesh.skin.empty()) return;
+    SkinWeights gathered;
+    gathered.first.push_back(0);
+    for (const uint32_t i : source) {
+        for (uint32_t k = mesh.skin.first[i]; k < mesh.skin.first[i + 1]; ++k) {
+            gathered.joint.push_back(mesh.skin.joint[k]);
+            gathered.weight.push_back(mesh.skin.weight[k]);
+        }
+        gathered.first.push_back(static_cast<uint32_t>(gathered.joint.size()));
+    }
+    mesh.skin = std::move(gathered);
+}
 
 void compactVertices(Mesh& mesh) {
     constexpr uint32_t kUnused = ~0u;

@@ -8,6 +8,9 @@ namespace lumi {
 /// Drops vertices that no triangle uses; the order of the others stays.
 void compactVertices(Mesh& mesh);
 
+/// New vertex i is old vertex source[i], with all its attributes; triangles stay as they are.
+void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& source);
+
 /// Gives each triangle its own three vertices with the triangle's normal, so that it shades flat.
 void makeFlat(Mesh& mesh);
 
