@@ -13,16 +13,19 @@
 namespace lumi {
 namespace {
 
-constexpr int kRays = 48;
+constexpr int kSpread = 48;         ///< directions over the sphere
+constexpr int kRays = kSpread + 4;  ///< and the four horizontal axes: +x, -x, +z, -z
 
-/// Directions spread evenly over the sphere by the golden angle.
+/// Directions spread evenly over the sphere by the golden angle, then the horizontal axes.
 std::array<Vec3, kRays> spreadDirections() {
     std::array<Vec3, kRays> directions;
-    for (int i = 0; i < kRays; ++i) {
-        const float y = 1 - (2 * static_cast<float>(i) + 1) / kRays;
+    for (int i = 0; i < kSpread; ++i) {
+        const float y = 1 - (2 * static_cast<float>(i) + 1) / kSpread;
         const float r = std::sqrt(1 - y * y), angle = 2.39996323f * static_cast<float>(i);
         directions[static_cast<size_t>(i)] = {r * std::cos(angle), y, r * std::sin(angle)};
     }
+    directions[kSpread] = {1, 0, 0}, directions[kSpread + 1] = {-1, 0, 0};
+    directions[kSpread + 2] = {0, 0, 1}, directions[kSpread + 3] = {0, 0, -1};
     return directions;
 }
 
@@ -69,8 +72,9 @@ void traceInstance(const Scene& scene, const NodePose& pose, const Instance& ins
     if (mesh.deforms()) {
         std::vector<Mat4> joints;
         if (skinned) joints = jointMatrices(scene.skins[static_cast<size_t>(instance.skin)], pose);
-        deformed = deform(mesh, instance.node >= 0 ? pose.morphWeights[static_cast<size_t>(instance.node)]
-                                                   : std::vector<float>(), joints);
+        deformed = deform(
+            mesh, instance.node >= 0 ? pose.morphWeights[static_cast<size_t>(instance.node)] : std::vector<float>(),
+            joints);
     }
     const std::vector<Vec3>& positions = mesh.deforms() ? deformed.positions : mesh.positions;
     const bool mirrored = isMirroring(worldFromObject);
@@ -105,14 +109,38 @@ bool illuminates(const Material& material) {
     return material.emits() && (!material.emissionTexture || maxComponent(material.emission) > 1);
 }
 
-}  // namespace
-
-float enclosure(const Scene& scene, const Vec3& origin) {
+FirstHits lookAround(const Scene& scene, const Vec3& origin) {
     const std::array<Vec3, kRays> directions = spreadDirections();
     const NodePose pose = poseNodes(scene, {});
     FirstHits hits;
     for (const Instance& instance : scene.instances) traceInstance(scene, pose, instance, origin, directions, hits);
-    return static_cast<float>(std::count(hits.front.begin(), hits.front.end(), true)) / kRays;
+    return hits;
+}
+
+float enclosureOf(const FirstHits& hits) {
+    return static_cast<float>(std::count(hits.front.begin(), hits.front.begin() + kSpread, true)) / kSpread;
+}
+
+/// Stands in a room and looks along its longer horizontal axis: from the middle, or, if the room is open at one end of
+/// the axis, from there.
+void standInside(const Vec3& centre, const Vec3& half, const FirstHits& hits, Camera& camera) {
+    const auto isOpen = [&](int axis, int end) {
+        return hits.distance[static_cast<size_t>(kSpread + 2 * axis + end)] == kInfinity;
+    };
+    const auto openEnds = [&](int axis) { return int(isOpen(axis, 0)) + int(isOpen(axis, 1)); };
+    int axis = half.x >= half.z ? 0 : 1;
+    const bool nearlySquare = std::min(half.x, half.z) > 0.95f * std::max(half.x, half.z);
+    if (nearlySquare && openEnds(axis) != 1 && openEnds(1 - axis) == 1) axis = 1 - axis;
+    const Vec3 along = axis == 0 ? Vec3(half.x, 0, 0) : Vec3(0, 0, half.z);
+    const Vec3 forward = openEnds(axis) == 1 ? (isOpen(axis, 0) ? -along : along) : (axis == 0 ? along : -along);
+    camera.eye = openEnds(axis) == 1 ? centre - 0.98f * forward : centre;
+    camera.target = centre + forward;
+}
+
+}  // namespace
+
+float enclosure(const Scene& scene, const Vec3& origin) {
+    return enclosureOf(lookAround(scene, origin));
 }
 
 Camera defaultCamera(const Scene& scene) {
@@ -120,9 +148,8 @@ Camera defaultCamera(const Scene& scene) {
     const Bounds3 bounds = scene.restBounds();
     if (bounds.empty() || !isFinite(bounds.size())) return camera;
     const Vec3 centre = bounds.centre(), half = glm::max(0.5f * bounds.size(), Vec3(1e-6f));
-    if (enclosure(scene, centre) >= 0.75f) {
-        camera.eye = centre;
-        camera.target = centre + (half.x >= half.z ? Vec3(half.x, 0, 0) : Vec3(0, 0, -half.z));
+    if (const FirstHits hits = lookAround(scene, centre); enclosureOf(hits) >= 0.75f) {
+        standInside(centre, half, hits, camera);
     } else {
         const Vec3 from = glm::normalize(Vec3(0.35f, 0.22f, 1));
         const Mat3 axes(lookAt(from, Vec3(0)));

@@ -40,6 +40,22 @@ TEST(DefaultCamera, StandsInsideRooms) {
     EXPECT_GT(std::abs(glm::normalize(alongZ.target - alongZ.eye).z), 0.9999f);
 }
 
+TEST(DefaultCamera, StandsAtTheOpenEndOfARoom) {
+    // A Cornell box: five walls of a near-cube, open towards +z or, turned, towards -x.
+    Mesh box = roomMesh({2, 2, 1.98f});
+    std::erase_if(box.triangles, [&](const UVec3& t) {
+        return box.positions[t.x].z > 0.9f && box.positions[t.y].z > 0.9f && box.positions[t.z].z > 0.9f;
+    });
+    const Camera camera = defaultCamera(sceneOf(box, {5, 0, 0}));
+    EXPECT_LT(glm::distance(camera.eye, Vec3(5, 0, 0.98f * 0.99f)), 1e-4f);
+    EXPECT_LT(glm::normalize(camera.target - camera.eye).z, -0.9999f);
+    for (Vec3& p : box.positions) p = {-p.z, p.y, p.x};
+    for (Vec3& n : box.normals) n = {-n.z, n.y, n.x};
+    const Camera turned = defaultCamera(sceneOf(box));
+    EXPECT_LT(turned.eye.x, -0.9f);
+    EXPECT_GT(glm::normalize(turned.target - turned.eye).x, 0.9999f);
+}
+
 TEST(DefaultCamera, FramesWhatIsNotARoom) {
     // A floor seen from its own centre encloses nothing; every corner must be in a square image, and fill most of it.
     for (const Vec3& at : {Vec3(0), Vec3(100, -20, 7)}) {
