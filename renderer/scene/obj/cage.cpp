@@ -74,7 +74,11 @@ SubdivisionCage parseCage(std::string text, const std::string& where) {
 
     bool everyCornerHasUv = !cage.uvs.empty();
     for (const tinyobj::shape_t& shape : reader.GetShapes()) {
-        for (const auto size : shape.mesh.num_face_vertices) cage.faceSizes.push_back(size);
+        // tinyobj keeps a face's number of corners in a byte, which larger faces overflow.
+        uint64_t corners = 0;
+        for (const auto size : shape.mesh.num_face_vertices) cage.faceSizes.push_back(size), corners += size;
+        if (corners != shape.mesh.indices.size())
+            throwBadInput({"a face has too many corners", where, "at most 255", ""});
         for (const tinyobj::index_t& index : shape.mesh.indices) {
             if (index.vertex_index < 0) throwBadInput({"a face names a vertex that does not exist", where, "", ""});
             cage.faceVertices.push_back(static_cast<uint32_t>(index.vertex_index));

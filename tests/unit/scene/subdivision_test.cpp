@@ -163,6 +163,14 @@ TEST(Subdivision, RefusesBrokenCages) {
     cage.faceVertices[0] = 99;
     EXPECT_THROW(tessellate(cage, 2, "cube"), Error);
     EXPECT_THROW(parseCage("v 0 0 0\n", "points.obj"), Error);
+    std::string wide = "f", points;
+    for (int i = 1; i <= 256; ++i) points += "v 0 0 " + std::to_string(i) + "\n", wide += " " + std::to_string(i);
+    try {
+        parseCage(points + wide + "\n", "wide.obj");
+        ADD_FAILURE() << "a face of 256 corners is accepted";
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()), "wide.obj: a face has too many corners; expected at most 255");
+    }
 }
 
 }  // namespace
