@@ -16,6 +16,7 @@
 #include "robustness/mutate.h"
 #include "scene/load.h"
 #include "scene/posed_scene.h"
+#include "unit/scene/compressed_gltf.h"
 
 namespace lumi {
 namespace {
@@ -63,7 +64,10 @@ protected:
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
         EXPECT_LT(took.count(), 10) << name << " seed " << seed;
     }
+    /// $LUMISCOPE_SEEDS names a folder that gets the good files, as a corpus for the fuzz targets.
     void mutateScene(const std::string& name, const std::string& good, bool isText, uint64_t base) {
+        if (const char* seeds = std::getenv("LUMISCOPE_SEEDS"))
+            writeFileAtomically(fs::path(seeds) / (std::to_string(base) + "-" + name), std::string_view(good));
         tryScene(name, good, 0);
         ASSERT_EQ(accepted_, 1) << "the file is refused before it is damaged";
         for (int i = 0; i < caseCount(); ++i) {
@@ -107,6 +111,33 @@ TEST_F(Robustness, SparseGltf) {
 TEST_F(Robustness, BinaryGltf) {
     REQUIRE_ASSETS();
     mutateScene("box.glb", assetBytes("gltf/BoxAnimated/glTF-Binary/BoxAnimated.glb"), false, 5000000);
+}
+std::string glbBytes(const test::GltfBuilder& file) {
+    const std::vector<uint8_t> bytes = file.glb();
+    return {bytes.begin(), bytes.end()};
+}
+
+TEST_F(Robustness, DracoMeshes) {
+    const test::Sheet sheet(5);
+    for (const int method : {draco::MESH_SEQUENTIAL_ENCODING, draco::MESH_EDGEBREAKER_ENCODING}) {
+        accepted_ = refused_ = 0;
+        test::GltfBuilder file;
+        test::addDraco(file, test::encodeDraco(sheet, method), sheet.indices.size());
+        mutateScene("draco.glb", glbBytes(file), false, 9000000 + 500000 * static_cast<uint64_t>(method));
+    }
+}
+TEST_F(Robustness, MeshoptViews) {
+    for (const bool sequence : {false, true}) {
+        accepted_ = refused_ = 0;
+        test::GltfBuilder file;
+        test::addMeshopt(file, test::Sheet(5), sequence);
+        mutateScene("meshopt.glb", glbBytes(file), false, 10000000 + (sequence ? 500000 : 0));
+    }
+}
+TEST_F(Robustness, ImagesOfOtherFormats) {
+    test::GltfBuilder file;
+    test::addForeignTextures(file);
+    mutateScene("images.glb", glbBytes(file), false, 11000000);
 }
 TEST_F(Robustness, RadianceSkies) {
     std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n";

@@ -71,7 +71,8 @@ void convert(const Elements& from, To* out) {
 
 class Reader {
 public:
-    Reader(const Document& document, int index, const std::string& jsonPath) : document_(document) {
+    Reader(const Document& document, int index, const std::string& jsonPath, const DecodedElements* decoded)
+        : document_(document), decoded_(decoded) {
         document.checkIndex(index, document.model().accessors.size(), jsonPath, "accessors");
         accessor_ = &document.model().accessors[static_cast<size_t>(index)];
         path_ = "/accessors/" + std::to_string(index);
@@ -79,7 +80,11 @@ public:
         elements_.componentType = accessor_->componentType;
         elements_.count = accessor_->count;
         elements_.normalized = accessor_->normalized;
-        componentBytes_ = componentBytes(accessor_->componentType);
+        if (decoded) {
+            elements_.components = decoded->components;
+            elements_.componentType = decoded->componentType;
+        }
+        componentBytes_ = componentBytes(elements_.componentType);
         if (componentBytes_ == 0 || elements_.components <= 0)
             document.fail(path_ + "/componentType", "unsupported component type", "5120 to 5126",
                           std::to_string(accessor_->componentType));
@@ -96,7 +101,7 @@ public:
                        std::to_string(elements_.components));
     }
     void expectIntegers(const std::string& jsonPath) const {
-        const int type = accessor_->componentType;
+        const int type = elements_.componentType;
         if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
             type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
             document_.fail(jsonPath, path_ + " does not hold unsigned integers", "5121, 5123 or 5125",
@@ -110,7 +115,7 @@ public:
         checkMemory("an accessor", values * sizeof(To));
         std::vector<To> out(values);
         if (elements_.data) convert(elements_, out.data());
-        if (accessor_->sparse.isSparse) putSparse(out);
+        if (accessor_->sparse.isSparse && !decoded_) putSparse(out);
         return out;
     }
 
@@ -119,6 +124,12 @@ private:
 
     /// Checks that all elements lie within their buffer view.
     void locate() {
+        if (decoded_) {
+            elements_.stride = elementBytes();
+            elements_.data = decoded_->bytes.data();
+            checkFits(decoded_->bytes.size(), 0, elements_.stride, elements_.count, elementBytes(), path_);
+            return;
+        }
         if (accessor_->bufferView < 0) return;
         const std::span<const uint8_t> view = document_.bufferView(accessor_->bufferView, path_ + "/bufferView");
         const size_t stride = document_.model().bufferViews[static_cast<size_t>(accessor_->bufferView)].byteStride;
@@ -177,6 +188,7 @@ private:
     }
 
     const Document& document_;
+    const DecodedElements* decoded_;
     const tinygltf::Accessor* accessor_ = nullptr;
     std::string path_;
     Elements elements_;
@@ -185,29 +197,32 @@ private:
 
 }  // namespace
 
-std::vector<float> readFloats(const Document& document, int index, int components, const std::string& jsonPath) {
-    Reader reader(document, index, jsonPath);
+std::vector<float> readFloats(const Document& document, int index, int components, const std::string& jsonPath,
+                              const DecodedElements* decoded) {
+    Reader reader(document, index, jsonPath, decoded);
     reader.expectComponents(components, jsonPath);
     return reader.read<float>();
 }
 
 template <class T>
-std::vector<T> readVectors(const Document& document, int index, const std::string& jsonPath) {
+std::vector<T> readVectors(const Document& document, int index, const std::string& jsonPath,
+                           const DecodedElements* decoded) {
     static_assert(sizeof(T) % sizeof(float) == 0);
     const std::vector<float> values =
-        readFloats(document, index, static_cast<int>(sizeof(T) / sizeof(float)), jsonPath);
+        readFloats(document, index, static_cast<int>(sizeof(T) / sizeof(float)), jsonPath, decoded);
     std::vector<T> vectors(values.size() * sizeof(float) / sizeof(T));
     if (!vectors.empty()) std::memcpy(static_cast<void*>(vectors.data()), values.data(), values.size() * sizeof(float));
     return vectors;
 }
 
-template std::vector<Vec2> readVectors<Vec2>(const Document&, int, const std::string&);
-template std::vector<Vec3> readVectors<Vec3>(const Document&, int, const std::string&);
-template std::vector<Vec4> readVectors<Vec4>(const Document&, int, const std::string&);
-template std::vector<Mat4> readVectors<Mat4>(const Document&, int, const std::string&);
+template std::vector<Vec2> readVectors<Vec2>(const Document&, int, const std::string&, const DecodedElements*);
+template std::vector<Vec3> readVectors<Vec3>(const Document&, int, const std::string&, const DecodedElements*);
+template std::vector<Vec4> readVectors<Vec4>(const Document&, int, const std::string&, const DecodedElements*);
+template std::vector<Mat4> readVectors<Mat4>(const Document&, int, const std::string&, const DecodedElements*);
 
-std::vector<uint32_t> readIntegers(const Document& document, int index, int components, const std::string& jsonPath) {
-    Reader reader(document, index, jsonPath);
+std::vector<uint32_t> readIntegers(const Document& document, int index, int components, const std::string& jsonPath,
+                                   const DecodedElements* decoded) {
+    Reader reader(document, index, jsonPath, decoded);
     reader.expectComponents(components, jsonPath);
     reader.expectIntegers(jsonPath);
     return reader.read<uint32_t>();

@@ -8,7 +8,10 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/memory.h"
+#include "base/parallel.h"
+#include "scene/gltf/glb.h"
 #include "scene/gltf/json_guard.h"
+#include "scene/gltf/meshopt.h"
 
 namespace lumi::gltf {
 namespace {
@@ -20,6 +23,8 @@ constexpr uint64_t kMaxFileBytes = (uint64_t(1) << 32) - 1;  ///< GLB lengths ar
 
 /// Extensions that the loader understands, in the order of the glTF registry.
 constexpr std::array kSupportedExtensions = {"EXT_mesh_gpu_instancing",
+                                             "EXT_meshopt_compression",
+                                             "KHR_draco_mesh_compression",
                                              "KHR_lights_punctual",
                                              "KHR_materials_anisotropy",
                                              "KHR_materials_clearcoat",
@@ -36,43 +41,16 @@ constexpr std::array kSupportedExtensions = {"EXT_mesh_gpu_instancing",
                                              "KHR_mesh_quantization",
                                              "KHR_texture_transform"};
 
+/// Texture formats that are shown as placeholders, with a warning of their own (TextureLibrary).
+constexpr std::array kPlaceholderExtensions = {"EXT_texture_avif", "EXT_texture_webp", "KHR_texture_basisu",
+                                               "MSFT_texture_dds"};
+
 bool isSupported(const std::string& extension) {
-    return std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) != kSupportedExtensions.end();
+    const auto in = [&](const auto& list) { return std::find(list.begin(), list.end(), extension) != list.end(); };
+    return in(kSupportedExtensions) || in(kPlaceholderExtensions);
 }
 
 std::string firstLine(const std::string& text) { return text.substr(0, text.find_first_of("\r\n")); }
-
-bool isBinary(std::span<const uint8_t> file) { return file.size() >= 4 && std::memcmp(file.data(), "glTF", 4) == 0; }
-
-uint32_t word(std::span<const uint8_t> file, size_t offset) {
-    uint32_t value = 0;
-    std::memcpy(&value, file.data() + offset, 4);
-    return value;
-}
-
-/// The JSON chunk of a GLB. Throws Error(BadInput) if the header or the chunk is cut off.
-std::string_view jsonChunk(std::span<const uint8_t> file, const std::string& where) {
-    constexpr uint32_t kJson = 0x4E4F534A;
-    if (file.size() < 20)
-        throwBadInput({.what = "the GLB is truncated",
-                       .where = where,
-                       .expected = "a header of 20 bytes",
-                       .found = std::to_string(file.size()) + " bytes"});
-    if (word(file, 4) != 2)
-        throwBadInput({.what = "unsupported GLB version",
-                       .where = where,
-                       .expected = "2",
-                       .found = std::to_string(word(file, 4))});
-    if (word(file, 8) > file.size())
-        throwBadInput({.what = "the GLB is truncated",
-                       .where = where,
-                       .expected = std::to_string(word(file, 8)) + " bytes",
-                       .found = std::to_string(file.size())});
-    const uint64_t length = word(file, 12);
-    if (word(file, 16) != kJson || 20 + length > file.size())
-        throwBadInput({.what = "the GLB's JSON chunk is damaged", .where = where});
-    return {reinterpret_cast<const char*>(file.data()) + 20, static_cast<size_t>(length)};
-}
 
 tinygltf::FsCallbacks callbacksFor(Document& document) {
     tinygltf::FsCallbacks callbacks{};
@@ -104,6 +82,7 @@ Document::Document(const std::filesystem::path& path, MessageLog& log, const Loa
     digest_ = digest64(file);
     try {
         parse(file);
+        decompressViews();
     } catch (const std::bad_alloc&) {
         throw Error(ErrorKind::Resources, {.what = "not enough memory to read the file", .where = name_});
     } catch (const Error&) {
@@ -124,7 +103,10 @@ void Document::parse(std::span<const uint8_t> file) {
     uint64_t bytes = 0;
     const JsonSummary summary = inspectJson(json, name_);
     checkRequiredExtensions(summary.requiredExtensions);
+    bool anyPlaceholder = summary.hasDraco;
     for (const JsonSummary::Buffer& buffer : summary.buffers) {
+        anyPlaceholder |= buffer.isFallback;
+        if (buffer.isFallback) continue;
         if (buffer.external) externalBufferLengths_.push_back(buffer.byteLength);
         bytes += buffer.hasUri ? 0 : std::min<uint64_t>(buffer.byteLength, file.size());
     }
@@ -134,10 +116,18 @@ void Document::parse(std::span<const uint8_t> file) {
     reader.SetFsCallbacks(callbacksFor(*this));
     reader.SetImageLoader(keepEncoded, this);
     std::string error, warning;
-    const unsigned int length = static_cast<unsigned int>(binary ? file.size() : json.size());
-    const bool good =
-        binary ? reader.LoadBinaryFromMemory(&model_, &error, &warning, file.data(), length, kFolder)
-               : reader.LoadASCIIFromString(&model_, &error, &warning, json.data(), length, kFolder);
+    const bool good = [&] {
+        const std::string patched = anyPlaceholder ? withoutPlaceholders(json) : std::string();
+        if (binary) {
+            const std::vector<uint8_t> glb = anyPlaceholder ? withJsonChunk(file, patched) : std::vector<uint8_t>();
+            const std::span<const uint8_t> whole = anyPlaceholder ? std::span<const uint8_t>(glb) : file;
+            return reader.LoadBinaryFromMemory(&model_, &error, &warning, whole.data(),
+                                               static_cast<unsigned int>(whole.size()), kFolder);
+        }
+        const std::string_view text = anyPlaceholder ? std::string_view(patched) : json;
+        return reader.LoadASCIIFromString(&model_, &error, &warning, text.data(),
+                                          static_cast<unsigned int>(text.size()), kFolder);
+    }();
     if (!good && !missingFile_.empty() && error.find("File not found") != error.npos)
         throwBadInput({.what = "the buffer file \"" + missingFile_ + "\" does not exist", .where = name_});
     if (!good) throwBadInput({.what = "damaged glTF: " + firstLine(error), .where = name_});
@@ -173,13 +163,28 @@ void Document::checkIndex(int64_t index, size_t count, const std::string& jsonPa
 std::span<const uint8_t> Document::bufferView(int index, const std::string& jsonPath) const {
     checkIndex(index, model_.bufferViews.size(), jsonPath, "bufferViews");
     const tinygltf::BufferView& view = model_.bufferViews[static_cast<size_t>(index)];
-    const std::string viewPath = "/bufferViews/" + std::to_string(index);
-    checkIndex(view.buffer, model_.buffers.size(), viewPath + "/buffer", "buffers");
-    const std::vector<unsigned char>& buffer = model_.buffers[static_cast<size_t>(view.buffer)].data;
-    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
-        fail(viewPath, "reaches past the end of its buffer", "at most " + std::to_string(buffer.size()) + " bytes",
-             std::to_string(view.byteOffset) + " + " + std::to_string(view.byteLength));
-    return {buffer.data() + view.byteOffset, view.byteLength};
+    if (isMeshopt(view)) return decompressed_[static_cast<size_t>(index)];
+    return bufferBytes(view.buffer, view.byteOffset, view.byteLength, "/bufferViews/" + std::to_string(index));
+}
+
+std::span<const uint8_t> Document::bufferBytes(int index, size_t offset, size_t length,
+                                               const std::string& jsonPath) const {
+    checkIndex(index, model_.buffers.size(), jsonPath + "/buffer", "buffers");
+    const std::vector<unsigned char>& buffer = model_.buffers[static_cast<size_t>(index)].data;
+    if (offset > buffer.size() || length > buffer.size() - offset)
+        fail(jsonPath, "reaches past the end of its buffer", "at most " + std::to_string(buffer.size()) + " bytes",
+             std::to_string(offset) + " + " + std::to_string(length));
+    return {buffer.data() + offset, length};
+}
+
+void Document::decompressViews() {
+    decompressed_.resize(model_.bufferViews.size());
+    parallelFor(static_cast<int64_t>(decompressed_.size()), [&](int64_t i) {
+        const auto index = static_cast<size_t>(i);
+        pollStop();
+        const tinygltf::BufferView& view = model_.bufferViews[index];
+        if (isMeshopt(view)) decompressed_[index] = decodeMeshopt(*this, view, "/bufferViews/" + std::to_string(index));
+    });
 }
 
 void Document::progress(float fraction, const std::string& step) const {

@@ -41,8 +41,11 @@ public:
 
     /// Throws unless `index` is a valid index into a collection of `count` things called `collection`.
     void checkIndex(int64_t index, size_t count, const std::string& jsonPath, const char* collection) const;
-    /// The bytes of a buffer view, range checked.
+    /// The bytes of a buffer view, range checked, decompressed if need be.
     std::span<const uint8_t> bufferView(int index, const std::string& jsonPath) const;
+
+    /// Part of a buffer, range checked; `jsonPath` names what refers to it.
+    std::span<const uint8_t> bufferBytes(int buffer, size_t offset, size_t length, const std::string& jsonPath) const;
 
     /// Reports a step; throws Error(Interrupted) if the load was stopped.
     void progress(float fraction, const std::string& step) const;
@@ -55,6 +58,7 @@ public:
 
 private:
     void parse(std::span<const uint8_t> file);
+    void decompressViews();
     void checkRequiredExtensions(const std::vector<std::string>& names) const;
     std::filesystem::path resolve(const std::string& uri) const;
 
@@ -64,6 +68,7 @@ private:
     const LoadOptions& options_;
     tinygltf::Model model_;
     std::vector<ImageSource> images_;
+    std::vector<std::vector<uint8_t>> decompressed_;  ///< by buffer view; empty where it is not compressed
     std::vector<uint64_t> externalBufferLengths_;
     size_t externalBuffersRead_ = 0;
     std::string missingFile_;  ///< the last file that was asked for and is not there

@@ -10,6 +10,22 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+constexpr const char* kMeshopt = "EXT_meshopt_compression";
+
+/// The object's member if it is there and has such members of its own, else null.
+Json* objectIn(Json& object, const char* name) {
+    if (!object.is_object()) return nullptr;
+    const auto found = object.find(name);
+    return found != object.end() && found->is_object() ? &*found : nullptr;
+}
+
+/// The extension of that name, or null.
+Json* extensionIn(Json& object, const char* name) {
+    Json* extensions = objectIn(object, "extensions");
+    return extensions ? objectIn(*extensions, name) : nullptr;
+}
+
 /// Follows the parser's events; keeps only what JsonSummary asks for. Every event returns whether to go on.
 class Guard final : public nlohmann::json_sax<Json> {
 public:
@@ -17,7 +33,11 @@ public:
     JsonSummary summary;
 
     bool null() override { return true; }
-    bool boolean(bool) override { return true; }
+    bool boolean(bool value) override {
+        if (section_ == "buffers" && depth_ == 5 && key_ == "fallback" && !summary.buffers.empty())
+            summary.buffers.back().isFallback = value;
+        return true;
+    }
     bool number_integer(number_integer_t) override { return true; }
     bool number_unsigned(number_unsigned_t value) override {
         if (inBuffer() && key_ == "byteLength") summary.buffers.back().byteLength = value;
@@ -46,6 +66,7 @@ public:
     bool end_array() override { return leave(); }
     bool key(string_t& value) override {
         if (depth_ == 1) section_ = value;
+        summary.hasDraco |= section_ == "meshes" && value == kDraco;
         key_ = value;
         return true;
     }
@@ -80,6 +101,29 @@ private:
 };
 
 }  // namespace
+
+std::string withoutPlaceholders(std::string_view json) {
+    Json tree = Json::parse(json.begin(), json.end());
+    const auto each = [](Json& parent, const char* name, const auto& visit) {
+        if (!parent.is_object() || !parent.contains(name) || !parent[name].is_array()) return;
+        for (Json& entry : parent[name]) visit(entry);
+    };
+    each(tree, "buffers", [](Json& buffer) {
+        const Json* meshopt = extensionIn(buffer, kMeshopt);
+        if (!meshopt || !meshopt->contains("fallback") || (*meshopt)["fallback"] != true) return;
+        buffer["uri"] = "data:application/octet-stream;base64,AA==";
+        buffer["byteLength"] = 1;
+    });
+    each(tree, "meshes", [&](Json& mesh) {
+        each(mesh, "primitives", [](Json& primitive) {
+            Json* draco = extensionIn(primitive, kDraco);
+            if (!draco || !primitive.contains("indices")) return;
+            (*draco)["indices"] = primitive["indices"];
+            primitive.erase("indices");
+        });
+    });
+    return tree.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
 
 JsonSummary inspectJson(std::string_view json, const std::string& where) {
     Guard guard(json, where);

@@ -11,14 +11,20 @@ struct JsonSummary {
     struct Buffer {
         bool hasUri = false;      ///< false: the GLB's own binary chunk
         bool external = false;    ///< a file, not a data URI
+        bool isFallback = false;  ///< EXT_meshopt_compression: only for readers without it; nothing need be there
         uint64_t byteLength = 0;
     };
     std::vector<Buffer> buffers;                  ///< in document order
+    bool hasDraco = false;                        ///< some primitive is under KHR_draco_mesh_compression
     std::vector<std::string> requiredExtensions;  ///< "extensionsRequired"
 };
 
 /// Deepest nesting that is accepted: tinygltf recurses, and overflows its stack on hostile files.
 inline constexpr int kMaxJsonDepth = 128;
+
+/// The JSON in a form that tinygltf accepts: every fallback buffer is one byte long and embedded, so that nothing is
+/// read for it; the indices of Draco primitives, which tinygltf wants bytes for, stand in their extension.
+std::string withoutPlaceholders(std::string_view json);
 
 /// Reads through the JSON without building a tree and without recursion. Throws Error(BadInput): a syntax error (with
 /// line and column), or nesting deeper than kMaxJsonDepth. `where` heads messages.

@@ -75,16 +75,18 @@ private:
         document_.pollStop();
         const tinygltf::Primitive& primitive = source_.primitives[p];
         const std::string path = path_ + "/primitives/" + std::to_string(p);
-        size_t part = 0;
-        while (part < sources_.size() && (sources_[part]->attributes != primitive.attributes ||
+        const std::unique_ptr<const DracoMesh> draco = decodeDraco(document_, primitive, path);
+        size_t part = draco ? sources_.size() : 0;
+        while (part < sources_.size() && (!sources_[part] || sources_[part]->attributes != primitive.attributes ||
                                           sources_[part]->targets != primitive.targets))
             ++part;
         if (part == sources_.size()) {
-            sources_.push_back(&primitive);
-            parts_.push_back(readVertices(document_, primitive, path));
+            sources_.push_back(draco ? nullptr : &primitive);
+            parts_.push_back(readVertices(document_, primitive, draco.get(), path));
         }
         if (parts_[part].positions.empty()) return;
-        const std::vector<UVec3> triangles = readTriangles(document_, primitive, parts_[part].positions.size(), path);
+        const std::vector<UVec3> triangles =
+            readTriangles(document_, primitive, draco.get(), parts_[part].positions.size(), path);
         int material = materialIndex(primitive, variant_);
         if (material < 0)
             material = static_cast<int>(materials_.size()) - 1;
@@ -115,7 +117,7 @@ private:
     int variant_;
     tinygltf::Mesh source_;
     std::string path_;
-    std::vector<const tinygltf::Primitive*> sources_;  ///< whose vertices a part holds
+    std::vector<const tinygltf::Primitive*> sources_;  ///< whose vertices a part holds; null: its own alone
     std::vector<Mesh> parts_;
 };
 

@@ -18,15 +18,15 @@ int find(const std::map<std::string, int>& attributes, const std::string& name) 
 /// Attributes of one primitive; knows how many vertices there must be.
 class VertexReader {
 public:
-    VertexReader(const Document& document, const std::string& path, size_t vertices)
-        : document_(document), path_(path), vertices_(vertices) {}
+    VertexReader(const Document& document, const std::string& path, size_t vertices, const DracoMesh* draco)
+        : document_(document), path_(path), vertices_(vertices), draco_(draco) {}
 
     /// Empty if the attribute is absent.
     template <class T>
     std::vector<T> read(const std::map<std::string, int>& attributes, const std::string& name) const {
         const int accessor = find(attributes, name);
         if (accessor < 0) return {};
-        std::vector<T> values = readVectors<T>(document_, accessor, path_ + "/" + name);
+        std::vector<T> values = readVectors<T>(document_, accessor, path_ + "/" + name, decoded(name));
         expectLength(values.size(), name);
         return values;
     }
@@ -48,7 +48,7 @@ public:
         for (int set = 0; find(attributes, "JOINTS_" + std::to_string(set)) >= 0; ++set) {
             const std::string joint = "JOINTS_" + std::to_string(set), weight = "WEIGHTS_" + std::to_string(set);
             if (find(attributes, weight) < 0) document_.fail(path_ + "/" + joint, "has no " + weight + " beside it");
-            joints.push_back(readIntegers(document_, find(attributes, joint), 4, path_ + "/" + joint));
+            joints.push_back(readIntegers(document_, find(attributes, joint), 4, path_ + "/" + joint, decoded(joint)));
             weights.push_back(read<Vec4>(attributes, weight));
             expectLength(joints.back().size() / 4, joint);
         }
@@ -58,6 +58,8 @@ public:
     }
 
 private:
+    const DecodedElements* decoded(const std::string& name) const { return draco_ ? draco_->find(name) : nullptr; }
+
     void expectLength(size_t length, const std::string& name) const {
         if (length != vertices_)
             document_.fail(path_ + "/" + name, "has another count than POSITION", std::to_string(vertices_),
@@ -93,6 +95,7 @@ private:
     const Document& document_;
     const std::string& path_;
     size_t vertices_;
+    const DracoMesh* draco_;
 };
 
 Vec3 unitOr(const Vec3& v, const Vec3& otherwise) {
@@ -119,14 +122,17 @@ void makeHarmless(Mesh& mesh) {
 
 }  // namespace
 
-Mesh readVertices(const Document& document, const tinygltf::Primitive& primitive, const std::string& path) {
+Mesh readVertices(const Document& document, const tinygltf::Primitive& primitive, const DracoMesh* draco,
+                  const std::string& path) {
     const std::map<std::string, int>& attributes = primitive.attributes;
     const std::string where = path + "/attributes";
     if (find(attributes, "POSITION") < 0) {
         document.warn(path + " has no positions and is left out");
         return {};
     }
-    const VertexReader reader(document, where, elementCount(document, find(attributes, "POSITION"), where + "/POSITION"));
+    const size_t vertices = elementCount(document, find(attributes, "POSITION"), where + "/POSITION");
+    const VertexReader reader(document, where, vertices, draco);
+    const VertexReader targets(document, where, vertices, nullptr);
     Mesh mesh;
     mesh.positions = reader.read<Vec3>(attributes, "POSITION");
     mesh.normals = reader.read<Vec3>(attributes, "NORMAL");
@@ -136,8 +142,8 @@ Mesh readVertices(const Document& document, const tinygltf::Primitive& primitive
     mesh.colours = reader.readColours(attributes);
     mesh.skin = reader.readSkin(attributes);
     for (const std::map<std::string, int>& target : primitive.targets)
-        mesh.morphTargets.push_back({reader.read<Vec3>(target, "POSITION"), reader.read<Vec3>(target, "NORMAL"),
-                                     reader.read<Vec3>(target, "TANGENT")});
+        mesh.morphTargets.push_back({targets.read<Vec3>(target, "POSITION"), targets.read<Vec3>(target, "NORMAL"),
+                                     targets.read<Vec3>(target, "TANGENT")});
     for (size_t i = 0; i < mesh.positions.size(); ++i)
         if (!isFinite(mesh.positions[i]))
             document.fail(where + "/POSITION", "the position of vertex " + std::to_string(i) + " is not finite");
@@ -145,8 +151,8 @@ Mesh readVertices(const Document& document, const tinygltf::Primitive& primitive
     return mesh;
 }
 
-std::vector<UVec3> readTriangles(const Document& document, const tinygltf::Primitive& primitive, size_t vertexCount,
-                                 const std::string& path) {
+std::vector<UVec3> readTriangles(const Document& document, const tinygltf::Primitive& primitive, const DracoMesh* draco,
+                                 size_t vertexCount, const std::string& path) {
     const int mode = primitive.mode;
     if (mode >= 0 && mode < TINYGLTF_MODE_TRIANGLES) {
         document.warn("points and lines are not drawn");
@@ -154,6 +160,8 @@ std::vector<UVec3> readTriangles(const Document& document, const tinygltf::Primi
     }
     if (mode < 0 || mode > TINYGLTF_MODE_TRIANGLE_FAN)
         document.fail(path + "/mode", "no such primitive mode", "0 to 6", std::to_string(mode));
+
+    if (draco) return draco->triangles;
 
     std::vector<uint32_t> indices;
     if (primitive.indices >= 0) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -27,6 +29,29 @@ TextureImage::Level placeholderLevel(TextureUse use) {
     if (use == TextureUse::Data) return {{1, 1}, {255, 255, 255, 255}, {}};
     if (use == TextureUse::Normal) return {{1, 1}, {128, 128, 255, 255}, {}};
     return {{2, 2}, {255, 0, 255, 255, 90, 90, 90, 255, 90, 90, 90, 255, 255, 0, 255, 255}, {}};
+}
+
+/// What a texture without an image of its own is encoded in.
+std::string formatOf(const tinygltf::ExtensionMap& extensions) {
+    constexpr std::pair<const char*, const char*> kFormats[] = {
+        {"KHR_texture_basisu", "KTX2 (KHR_texture_basisu)"}, {"EXT_texture_webp", "WebP (EXT_texture_webp)"},
+        {"EXT_texture_avif", "AVIF (EXT_texture_avif)"}, {"MSFT_texture_dds", "DDS (MSFT_texture_dds)"}};
+    for (const auto& [extension, format] : kFormats)
+        if (extensions.contains(extension)) return format;
+    return "an unknown format";
+}
+
+/// The same of an image's first bytes; empty if it may be one that is read.
+std::string formatOf(std::span<const uint8_t> bytes) {
+    const auto has = [&](size_t offset, std::string_view magic) {
+        return bytes.size() >= offset + magic.size() &&
+               std::memcmp(bytes.data() + offset, magic.data(), magic.size()) == 0;
+    };
+    if (has(0, "\xABKTX 20\xBB")) return "KTX2 (KHR_texture_basisu)";
+    if (has(0, "RIFF") && has(8, "WEBP")) return "WebP (EXT_texture_webp)";
+    if (has(4, "ftypavif")) return "AVIF (EXT_texture_avif)";
+    if (has(0, "DDS ")) return "DDS (MSFT_texture_dds)";
+    return {};
 }
 
 }  // namespace
@@ -60,7 +85,7 @@ Texture TextureLibrary::texture(int index, int texCoord, const tinygltf::Extensi
         texture.uvSet = 0;
     }
     if (source.source < 0) {
-        document_.warn(texturePath + " has no image in a supported format; a placeholder is shown");
+        countUnsupported(formatOf(source.extensions));
         texture.image = placeholder(use);
         return texture;
     }
@@ -106,6 +131,14 @@ void TextureLibrary::fill(Entry& entry, TextureImage::Level level) const {
     }
 }
 
+void TextureLibrary::showPlaceholder(Entry& entry) {
+    for (int use = 0; use < 3; ++use)
+        if (entry.images[use]) {
+            entry.images[use]->levels.assign(1, placeholderLevel(static_cast<TextureUse>(use)));
+            buildMips(*entry.images[use]);
+        }
+}
+
 void TextureLibrary::loadImage(int index, Entry& entry) const {
     const ImageSource& source = document_.images()[static_cast<size_t>(index)];
     const std::string jsonPath = "/images/" + std::to_string(index);
@@ -119,17 +152,28 @@ void TextureLibrary::loadImage(int index, Entry& entry) const {
         }
         if (bytes.empty()) throwBadInput({.what = "the image \"" + source.name.substr(0, 200) + "\" does not exist"});
         entry.digest = digest64(bytes);
+        if (const std::string format = formatOf(bytes); !format.empty()) {
+            countUnsupported(format);
+            return showPlaceholder(entry);
+        }
         Image8 decoded = decodeImage8(bytes, source.name);
         fill(entry, {decoded.extent, std::move(decoded.rgba), {}});
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::BadInput) throw;
         document_.warn(jsonPath + ": " + error.what() + "; a placeholder is shown");
-        for (int use = 0; use < 3; ++use)
-            if (entry.images[use]) {
-                entry.images[use]->levels.assign(1, placeholderLevel(static_cast<TextureUse>(use)));
-                buildMips(*entry.images[use]);
-            }
+        showPlaceholder(entry);
     }
+}
+
+void TextureLibrary::countUnsupported(const std::string& format) const {
+    const std::lock_guard lock(mutex_);
+    ++unsupported_[format];
+}
+
+void TextureLibrary::warnUnsupported() const {
+    for (const auto& [format, count] : unsupported_)
+        document_.warn(std::to_string(count) + (count == 1 ? " texture is in " : " textures are in ") + format +
+                       ", which is not supported; placeholders are shown");
 }
 
 void TextureLibrary::load(const std::function<void(float)>& step) {
@@ -142,6 +186,7 @@ void TextureLibrary::load(const std::function<void(float)>& step) {
         loadImage(index, entry);
         step(static_cast<float>(++done) / static_cast<float>(queue.size()));
     });
+    warnUnsupported();
     for (const Gloss& gloss : glosses_) {
         TextureImage::Level level = gloss.from->levels.front();
         for (size_t i = 0; i < level.bytes.size(); i += 4) {

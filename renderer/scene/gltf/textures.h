@@ -44,10 +44,15 @@ private:
     void loadImage(int index, Entry& entry) const;
     void fill(Entry& entry, TextureImage::Level level) const;
     std::shared_ptr<TextureImage> placeholder(TextureUse use) const;
+    static void showPlaceholder(Entry& entry);
+    void countUnsupported(const std::string& format) const;
+    void warnUnsupported() const;
 
     const Document& document_;
     std::map<int, Entry> entries_;  ///< by glTF image
     std::vector<Gloss> glosses_;
+    mutable std::mutex mutex_;
+    mutable std::map<std::string, int> unsupported_;  ///< textures and images of each format that is not read
 };
 
 }  // namespace lumi::gltf

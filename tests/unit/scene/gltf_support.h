@@ -22,6 +22,7 @@ public:
                            {"nodes", {{{"mesh", 0}}}},
                            {"meshes", nlohmann::json::array()}};
     std::vector<uint8_t> bin;
+    nlohmann::json extraBuffers = nlohmann::json::array();  ///< after the GLB's own
 
     /// Appends bytes as a buffer view and returns its index.
     int view(const void* data, size_t bytes, int stride = 0) {
@@ -59,6 +60,7 @@ public:
     std::vector<uint8_t> glb() const {
         nlohmann::json all = json;
         if (!bin.empty()) all["buffers"] = {{{"byteLength", bin.size()}}};
+        for (const nlohmann::json& buffer : extraBuffers) all["buffers"].push_back(buffer);
         std::string text = all.dump();
         while (text.size() % 4 != 0) text += ' ';
         std::vector<uint8_t> padded = bin, out;

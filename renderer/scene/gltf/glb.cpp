@@ -1,0 +1,60 @@
+#include "scene/gltf/glb.h"
+
+#include <cstring>
+
+#include "base/error.h"
+
+namespace lumi::gltf {
+namespace {
+
+uint32_t word(std::span<const uint8_t> file, size_t offset) {
+    uint32_t value = 0;
+    std::memcpy(&value, file.data() + offset, 4);
+    return value;
+}
+
+}  // namespace
+
+bool isBinary(std::span<const uint8_t> file) { return file.size() >= 4 && std::memcmp(file.data(), "glTF", 4) == 0; }
+
+std::string_view jsonChunk(std::span<const uint8_t> file, const std::string& where) {
+    constexpr uint32_t kJson = 0x4E4F534A;
+    if (file.size() < 20)
+        throwBadInput({.what = "the GLB is truncated",
+                       .where = where,
+                       .expected = "a header of 20 bytes",
+                       .found = std::to_string(file.size()) + " bytes"});
+    if (word(file, 4) != 2)
+        throwBadInput({.what = "unsupported GLB version",
+                       .where = where,
+                       .expected = "2",
+                       .found = std::to_string(word(file, 4))});
+    if (word(file, 8) > file.size())
+        throwBadInput({.what = "the GLB is truncated",
+                       .where = where,
+                       .expected = std::to_string(word(file, 8)) + " bytes",
+                       .found = std::to_string(file.size())});
+    const uint64_t length = word(file, 12);
+    if (word(file, 16) != kJson || 20 + length > file.size())
+        throwBadInput({.what = "the GLB's JSON chunk is damaged", .where = where});
+    return {reinterpret_cast<const char*>(file.data()) + 20, static_cast<size_t>(length)};
+}
+
+std::vector<uint8_t> withJsonChunk(std::span<const uint8_t> file, std::string json) {
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    constexpr size_t kHeader = 20;  // the file's and its first chunk's
+    const std::span<const uint8_t> rest = file.subspan(kHeader + word(file, 12));
+    std::vector<uint8_t> out(kHeader + json.size() + rest.size());
+    std::memcpy(out.data(), file.data(), kHeader);
+    std::memcpy(out.data() + kHeader, json.data(), json.size());
+    if (!rest.empty()) std::memcpy(out.data() + kHeader + json.size(), rest.data(), rest.size());
+    const auto put = [&](size_t offset, size_t value) {
+        const auto bits = static_cast<uint32_t>(value);
+        std::memcpy(out.data() + offset, &bits, 4);
+    };
+    put(8, out.size());
+    put(12, json.size());
+    return out;
+}
+
+}  // namespace lumi::gltf

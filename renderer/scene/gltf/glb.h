@@ -1,0 +1,19 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lumi::gltf {
+
+/// True if the file begins like a GLB.
+bool isBinary(std::span<const uint8_t> file);
+
+/// The JSON chunk of a GLB. Throws Error(BadInput) headed by `where` if the header or the chunk is cut off.
+std::string_view jsonChunk(std::span<const uint8_t> file, const std::string& where);
+
+/// A GLB that jsonChunk() accepts, with another JSON chunk.
+std::vector<uint8_t> withJsonChunk(std::span<const uint8_t> file, std::string json);
+
+}  // namespace lumi::gltf
