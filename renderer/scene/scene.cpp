@@ -98,8 +98,10 @@ size_t Scene::byteCount() const {
     for (const Instance& instance : instances) meshes.insert(instance.mesh.get());
     for (const Material& m : materials)
         for (const Texture* texture :
-             {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture, &m.occlusionTexture,
-              &m.emissionTexture, &m.specularTexture, &m.specularColorTexture, &m.transmissionTexture})
+             {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture, &m.occlusionTexture, &m.emissionTexture,
+              &m.specularTexture, &m.specularColorTexture, &m.transmissionTexture, &m.clearcoatTexture,
+              &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture, &m.sheenColorTexture, &m.sheenRoughnessTexture,
+              &m.anisotropyTexture, &m.iridescenceTexture, &m.iridescenceThicknessTexture})
             addTexture(*texture, images);
     size_t bytes = environment.image ? environment.image->bytes() : 0;
     for (const Mesh* mesh : meshes) bytes += mesh->byteCount();
