@@ -2,15 +2,14 @@
 
 #include <cmath>
 
+#include "filter/atrous_taps.h"
 #include "math/kernel_math.h"
 
 namespace lumi::LUMI_ISA {
 const AtrousKernels& atrousTable();
 namespace {
 
-constexpr int kBlock = 256;  ///< pixels whose sums stay in the first-level cache
 constexpr float kLog2E = 1.44269504f;
-constexpr float kSpline[5] = {1.0f / 16, 1.0f / 4, 3.0f / 8, 1.0f / 4, 1.0f / 16};  ///< B3
 
 /// log2(x) for x in (0, 1.4], absolute error below 7e-7, without kernelLog2's division; tiny x gives about -126.
 inline float log2OfCosine(float x) {
@@ -27,22 +26,6 @@ inline float log2OfCosine(float x) {
     p = p * t - 0.72136018f;
     p = p * t + 1.4426965f;
     return p * t + static_cast<float>(exponent);
-}
-
-/// One tap of a window: its offset in pixels and in memory, and the part of the row whose neighbour lies in the image.
-struct TapSpan {
-    float dx, dy;
-    std::ptrdiff_t offset;
-    int begin, end;
-};
-
-inline TapSpan tapSpan(const AtrousRow& row, int i, int j, int begin, int end) {
-    const int dx = i * row.step, dy = j * row.step;
-    TapSpan tap{static_cast<float>(dx), static_cast<float>(dy), static_cast<std::ptrdiff_t>(dy) * row.width + dx, begin, end};
-    if (tap.begin < -dx) tap.begin = -dx;
-    if (tap.end > row.width - dx) tap.end = row.width - dx;
-    if (row.y + dy < 0 || row.y + dy >= row.height) tap.end = tap.begin;
-    return tap;
 }
 
 /// log2 of w_z w_n (eqs. 3 and 4) of the tap for pixels [tap.begin, tap.end), into `exponent[x - first]`.
@@ -142,7 +125,7 @@ void filterRow(const AtrousRow& row) {
         for (int j = -2; j <= 2; ++j)
             for (int i = -2; i <= 2; ++i) {
                 if (i == 0 && j == 0) continue;
-                const TapSpan tap = tapSpan(row, i, j, first, last);
+                const TapSpan tap = tapSpan(row.width, row.height, row.y, i * row.step, j * row.step, first, last);
                 if (tap.begin >= tap.end) continue;
                 geometryExponents(row, tap, first, exponent);
                 const float h = kSpline[i + 2] * kSpline[j + 2];
@@ -195,7 +178,7 @@ void spatialVarianceRow(const AtrousRow& row, const float* historyLength, float 
         for (int j = -kRadius; j <= kRadius; ++j)
             for (int i = -kRadius; i <= kRadius; ++i) {
                 if (i == 0 && j == 0) continue;
-                const TapSpan tap = tapSpan(row, i, j, first, last);
+                const TapSpan tap = tapSpan(row.width, row.height, row.y, i * row.step, j * row.step, first, last);
                 if (tap.begin >= tap.end) continue;
                 geometryExponents(row, tap, first, exponent);
                 const float* __restrict mq = m + tap.offset;

@@ -96,19 +96,20 @@ private:
 
 }  // namespace
 
-void TemporalSettings::describe(ParameterVisitor& v) {
+void TemporalSettings::describe(ParameterVisitor& v, bool moments) {
     v.number("color-alpha", colourAlpha,
              {.label = "Colour alpha",
               .min = 0.01,
               .max = 1,
               .scale = Scale::Log,
               .help = "Weight of the new sample in the integrated colour (sec. 4.1)"});
-    v.number("moments-alpha", momentsAlpha,
-             {.label = "Moments alpha",
-              .min = 0.01,
-              .max = 1,
-              .scale = Scale::Log,
-              .help = "Weight of the new sample in the luminance moments (sec. 4.2)"});
+    if (moments)
+        v.number("moments-alpha", momentsAlpha,
+                 {.label = "Moments alpha",
+                  .min = 0.01,
+                  .max = 1,
+                  .scale = Scale::Log,
+                  .help = "Weight of the new sample in the luminance moments (sec. 4.2)"});
     v.toggle("arithmetic-warm-up", arithmeticWarmUp,
              {.label = "Arithmetic warm-up", .help = "Average the first frames in equal parts, 1/n, until 1/n falls below alpha"});
     reprojection.describe(v);

@@ -17,7 +17,8 @@ struct TemporalSettings {
     bool arithmeticWarmUp = false;  ///< 1/n until that falls below alpha
     ReprojectionSettings reprojection;
 
-    void describe(ParameterVisitor& v);
+    /// `moments`: the method uses them, so that their alpha is a parameter of it.
+    void describe(ParameterVisitor& v, bool moments = true);
 };
 
 /// One component (direct, indirect or both together) as it is carried from frame to frame.

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "reconstruct/accumulate/accumulate.h"
+#include "reconstruct/eaw/eaw.h"
 #include "reconstruct/none/none.h"
 #include "reconstruct/svgf/svgf.h"
 #include "reconstruct/taa/taa.h"
@@ -22,6 +23,7 @@ std::vector<ModuleEntry>& catalog() {
         {"none", "Raw frame", "", make<NoneModule>},
         {"accumulate", "Progressive mean", "", make<AccumulateModule>},
         {"svgf", "Spatiotemporal variance-guided filtering", "Schied17", make<SvgfModule>},
+        {"eaw", "Edge-avoiding à-trous wavelets", "Dammertz10", make<EawModule>},
         {"temporal", "Temporal accumulation", "Schied17", make<TemporalModule>},
         {"taa", "Temporal antialiasing", "Karis14", make<TaaModule>},
     };
