@@ -11,7 +11,8 @@ namespace lumi {
 
 void BaseBsdf::chooseProbabilities() {
     const float diffuse = luminance(albedo_[kDiffuse]), transmitted = luminance(albedo_[kTransmission]);
-    const float once = luminance(albedo_[kReflection]), multiple = luminance(multipleAlbedo_);
+    const float once = luminance(albedo_[kReflection]), through = luminance(throughAlbedo_);
+    const float multiple = luminance(multipleAlbedo_) + through;
     const float specular = once + multiple + transmitted, sum = diffuse + specular;
     if (!(sum > 0)) return;
     const float d = diffuse > 0 ? std::max(diffuse, kMinLobeShare * sum) : 0;
@@ -19,10 +20,13 @@ void BaseBsdf::chooseProbabilities() {
     probability_[kDiffuse] = d / (d + s);
     specularProbability_ = s / (d + s);
     if (specular > 0) multipleShare_ = multiple / specular;
+    if (multiple > 0) multipleThrough_ = through / multiple;
     if (once + transmitted > 0) reflectedShare_ = once / (once + transmitted);
     const float facets = 1 - multipleShare_;
-    probability_[kReflection] = specularProbability_ * (multipleShare_ + facets * reflectedShare_);
-    probability_[kTransmission] = specularProbability_ * (facets * (1 - reflectedShare_));
+    probability_[kReflection] =
+        specularProbability_ * (multipleShare_ * (1 - multipleThrough_) + facets * reflectedShare_);
+    probability_[kTransmission] =
+        specularProbability_ * (multipleShare_ * multipleThrough_ + facets * (1 - reflectedShare_));
 }
 
 /// Chance that a specular sample whose facet has this reflectance, and passes on `through` of the light, reflects.
@@ -34,20 +38,26 @@ float BaseBsdf::reflectionChance(const Vec3& reflected, float through) const {
 
 Vec2 BaseBsdf::schlickAlbedo(const Vec3& w) const {
     if (ggx_.isAnisotropic()) return AnisotropicAlbedo::get().directional(ggx_, w);
-    if (!smooth_) return SchlickAlbedo::get().directional(row_, w.z);
+    if (!smooth_) return SchlickAlbedo::get().directional(row_, {ggx_.alpha, w.z});
     const float s = schlickWeight(w.z);
     return {1 - s, s};
 }
 
 Vec2 BaseBsdf::schlickAverage() const {
     if (ggx_.isAnisotropic()) return AnisotropicAlbedo::get().average(ggx_);
-    return smooth_ ? Vec2(20.0f / 21, 1.0f / 21) : SchlickAlbedo::get().average(row_);
+    return smooth_ ? Vec2(20.0f / 21, 1.0f / 21) : SchlickAlbedo::get().average(std::sqrt(ggx_.alpha));
 }
 
 /// 1 - E1(w): what facets that reflect everything scatter more than once.
 float BaseBsdf::multipleBelow(const Vec3& w) const {
     const Vec2 e = schlickAlbedo(w);
     return std::max(0.0f, 1 - e.x - e.y);
+}
+
+/// What a rough boundary gives back of what it loses to second facets, for light from `w` on either side.
+float BaseBsdf::boundaryReturned(const Vec3& w) const {
+    if (!near_) return multipleBelow({w.x, w.y, std::abs(w.z)});
+    return (w.z > 0 ? near_ : far_)->returned(boundaryRow_, {ggx_.alpha, std::abs(w.z)});
 }
 
 /// What a facet does with light at this cosine.
@@ -85,8 +95,10 @@ LobeValue BaseBsdf::reflection(const Vec3& wi, const Vec3& h) const {
         value.pdf = facet.reflectionChance * density / (1 + lambdaO_);
     }
     if (multipleShare_ > 0) {
-        value.f += multipleScale_ * (multipleBelow(wi) * wi.z);
-        value.pdf += (pdfCosineHemisphere(wi.z) - value.pdf) * multipleShare_;
+        if (!isBlack(multipleScale_)) value.f += multipleScale_ * (multipleBelow(wi) * wi.z);
+        if (!isBlack(boundaryScale_)) value.f += boundaryScale_ * (boundaryReturned(wi) * wi.z);
+        value.pdf = (1 - multipleShare_) * value.pdf +
+                    multipleShare_ * (1 - multipleThrough_) * pdfCosineHemisphere(wi.z);
     }
     return value;
 }
@@ -114,9 +126,17 @@ LobeValue BaseBsdf::transmissionSolid(const Vec3& wi, const Vec3& h) const {
 
 LobeValue BaseBsdf::transmission(const Vec3& wi) const {
     if (wi.z >= 0 || deltaTransmission_ || probability_[kTransmission] == 0) return {};
-    if (solid_) return transmissionSolid(wi, halfVector(wo_ + eta_ * wi));
+    if (solid_) return withMultiple(transmissionSolid(wi, halfVector(wo_ + eta_ * wi)), wi);
     const Vec3 mirrored(wi.x, wi.y, -wi.z);
-    return transmissionThin(mirrored, halfVector(wo_ + mirrored));
+    return withMultiple(transmissionThin(mirrored, halfVector(wo_ + mirrored)), wi);
+}
+
+/// Adds what comes through after many facets.
+LobeValue BaseBsdf::withMultiple(LobeValue once, const Vec3& wi) const {
+    if (multipleThrough_ == 0) return once;
+    once.f += throughScale_ * (boundaryReturned(wi) * -wi.z);
+    once.pdf += multipleShare_ * multipleThrough_ * pdfCosineHemisphere(-wi.z);
+    return once;
 }
 
 BsdfValue BaseBsdf::evaluate(const Vec3& wi) const {
@@ -168,14 +188,18 @@ BsdfSample BaseBsdf::transmissionSample(const Vec3& h) const {
     if (solid_) {
         if (!refract(wo_, h, eta_, wi)) return {};
         wi = glm::normalize(wi);
-        t = transmissionSolid(wi, h);
+        t = withMultiple(transmissionSolid(wi, h), wi);
     } else {
         const Vec3 mirrored = glm::normalize(2 * glm::dot(wo_, h) * h - wo_);
         wi = {mirrored.x, mirrored.y, -mirrored.z};
-        t = transmissionThin(mirrored, h);
+        t = withMultiple(transmissionThin(mirrored, h), wi);
     }
+    return lowerSample(wi, t);
+}
+
+BsdfSample BaseBsdf::lowerSample(const Vec3& wi, const LobeValue& t) const {
     const float pdf = specularProbability_ * t.pdf;
-    if (!(pdf > 0)) return {};
+    if (!(pdf > 0) || wi.z >= 0) return {};
     return {wi, t.f / pdf, pdf, false, Lobe::SpecularTransmission};
 }
 
@@ -184,7 +208,8 @@ BsdfSample BaseBsdf::transmissionSample(const Vec3& h) const {
 BsdfSample BaseBsdf::sampleSpecular(float choice, Vec2 u) const {
     if (multipleShare_ > 0) {
         if (choice < multipleShare_) {
-            const Vec3 wi = sampleCosineHemisphere(u);
+            const Vec3 wi = sampleCosineHemisphere(u), below(wi.x, wi.y, -wi.z);
+            if (choice < multipleShare_ * multipleThrough_) return lowerSample(below, transmission(below));
             return upperSample(wi, halfVector(wo_ + wi), Lobe::SpecularReflection);
         }
         choice = std::min((choice - multipleShare_) / (1 - multipleShare_), 0x1.fffffep-1f);
@@ -206,7 +231,7 @@ Vec3 BaseBsdf::albedo(Lobe lobe) const {
     switch (lobe) {
         case Lobe::Diffuse: return albedo_[kDiffuse];
         case Lobe::SpecularReflection: return albedo_[kReflection] + multipleAlbedo_;
-        case Lobe::SpecularTransmission: return albedo_[kTransmission];
+        case Lobe::SpecularTransmission: return albedo_[kTransmission] + throughAlbedo_;
         default: break;
     }
     return Vec3(0);
@@ -223,9 +248,9 @@ bool BaseBsdf::isDelta() const {
 
 void BaseBsdf::keep(bool diffuse, bool specular) {
     if (!diffuse) albedo_[kDiffuse] = Vec3(0);
-    if (!specular) albedo_[kReflection] = albedo_[kTransmission] = multipleAlbedo_ = Vec3(0);
+    if (!specular) albedo_[kReflection] = albedo_[kTransmission] = multipleAlbedo_ = throughAlbedo_ = Vec3(0);
     std::fill(std::begin(probability_), std::end(probability_), 0.0f);
-    specularProbability_ = 0, multipleShare_ = 0, reflectedShare_ = 1;
+    specularProbability_ = 0, multipleShare_ = 0, multipleThrough_ = 0, reflectedShare_ = 1;
     chooseProbabilities();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include "trace/albedo_table.h"
 #include "trace/bsdf_inputs.h"
+#include "trace/dielectric_albedo.h"
 #include "trace/ggx.h"
 #include "trace/thin_film.h"
 
@@ -16,8 +17,11 @@ namespace lumi {
 ///     added to the Schlick part as a broad lobe m (1 - E1(wo)) (1 - E1(wi)) / (pi (1 - E1avg)) [Kulla & Conty 2017,
 ///     "Revisiting Physically Based Shading at Imageworks"], E1 the albedo of facets that reflect everything,
 ///     m = Favg^2 E1avg / (1 - Favg (1 - E1avg)). A thin film replaces its share of all Fresnel terms, seen from
-///     outside; the diffuse lobe under it is 1 - E(wo) alone, without the factor of wi;
-///   specular transmission: rough dielectric [Walter 2007] for solids, mirrored-reflection lobe for thin walls.
+///     outside; the diffuse lobe under it is 1 - E(wo) alone, without the factor of wi, and is not reciprocal;
+///   specular transmission: rough dielectric [Walter 2007] for solids, mirrored-reflection lobe for thin walls. What
+///     facets of a boundary scatter twice or more is added on both sides in the same way, l the loss of each side:
+///     t l_near(wo) l_far(wi) / (pi l_far avg) goes through and the rest comes back, t = (1 - Favg) min(1, l_far avg /
+///     l_near avg), which keeps reciprocity. A solid of stretched facets has no table of losses and is left without.
 /// Roughness below kDeltaRoughness is a perfect mirror or window: a delta lobe.
 ///
 /// What is transported is radiance over the square of the refractive index, which refraction leaves as it is: no
@@ -66,15 +70,20 @@ private:
     void setFacets(const BsdfInputs& inputs, float roughness);
     void setFilm(const LayerInputs& layers, const Vec3& baseF0, float reflecting);
     void setMultiple(float share);
+    void setBoundaryMultiple(const Vec2& reflectedTransmitted);
     void setDiffuse(const Vec3& rho, float f0, float f90);
     void setDiffuseUnderFilm(const Vec3& rho, float specular);
-    void setSpecular(bool inside);
+    void setSpecular(bool inside, bool multiple);
+    Vec2 boundaryAlbedo(bool inside) const;
+    Vec2 stretchedBoundaryAlbedo() const;
+    Vec2 schlickTowards(bool dividedWell) const;
     void applyFilm();
     void chooseProbabilities();
     float reflectionChance(const Vec3& reflected, float through) const;
     Vec2 schlickAlbedo(const Vec3& w) const;
     Vec2 schlickAverage() const;
     float multipleBelow(const Vec3& w) const;
+    float boundaryReturned(const Vec3& w) const;
     Facet facetAt(float cosTheta) const;
 
     LobeValue diffuse(const Vec3& wi) const;
@@ -82,11 +91,13 @@ private:
     LobeValue transmissionThin(const Vec3& mirrored, const Vec3& h) const;
     LobeValue transmissionSolid(const Vec3& wi, const Vec3& h) const;
     LobeValue transmission(const Vec3& wi) const;
+    LobeValue withMultiple(LobeValue once, const Vec3& wi) const;
 
     BsdfSample sampleDiffuse(Vec2 u) const;
     BsdfSample sampleSpecular(float choice, Vec2 u) const;
     BsdfSample upperSample(const Vec3& wi, const Vec3& h, Lobe lobe) const;
     BsdfSample transmissionSample(const Vec3& h) const;
+    BsdfSample lowerSample(const Vec3& wi, const LobeValue& t) const;
     BsdfSample deltaTransmissionSample() const;
     BsdfSample deltaSample(Slot slot, const Vec3& wi) const;
 
@@ -94,18 +105,25 @@ private:
     Ggx ggx_;
     RoughnessRow row_;           ///< of all albedo tables
     float lambdaO_ = 0;          ///< ggx_.lambda(wo_)
+    Vec2 schlickO_{1, 0};        ///< albedo towards wo under Schlick's term
     float eta_ = 1;              ///< index of the far side over that of wo's side
     bool smooth_ = false;        ///< reflection is a delta
     bool deltaTransmission_ = false;
     bool solid_ = false;
     bool hasBoundary_ = false;   ///< the base transmits: the exact Fresnel term takes part
+    const DielectricAlbedo* near_ = nullptr;  ///< of a rough solid, on wo's side
+    const DielectricAlbedo* far_ = nullptr;
+    RoughnessRow boundaryRow_;   ///< of their tables
 
     Vec3 diffuseScale_{0};       ///< rho (1 - E(wo)) / (1 - Eavg) / pi
     float layerF0_ = 0, layerF90_ = 0;  ///< of the dielectric layer over the diffuse base
     float layerMultiple_ = 0;    ///< m of that layer
     Vec3 multiple_{0};           ///< m of reflection, its share of the material multiplied in
-    Vec3 multipleAlbedo_{0};     ///< multiple_ (1 - E1(wo)), part of the reflection lobe's albedo
-    Vec3 multipleScale_{0};      ///< over pi (1 - E1avg)
+    Vec3 multipleScale_{0};      ///< multiple_ (1 - E1(wo)) over pi (1 - E1avg)
+    Vec3 boundaryScale_{0};      ///< the same of what a boundary reflects after many facets, and of what it transmits
+    Vec3 throughScale_{0};
+    Vec3 multipleAlbedo_{0};     ///< of both reflected parts, over what facets reflect once
+    Vec3 throughAlbedo_{0};      ///< and of the transmitted part
     Vec3 f0_{0};                 ///< Schlick part of reflection, its shares of the material multiplied in
     float f90_ = 0;
     Vec3 boundaryTint_{0};       ///< weight of the exact Fresnel term in reflection
@@ -121,6 +139,7 @@ private:
     float probability_[kSlots] = {0, 0, 0};
     float specularProbability_ = 0;  ///< of both specular lobes together
     float multipleShare_ = 0;        ///< of those, samples for what is scattered more than once
+    float multipleThrough_ = 0;      ///< and of these, the transmitted ones
     float reflectedShare_ = 1;       ///< of reflection among the others, by albedo
 };
 

@@ -11,8 +11,16 @@ namespace {
 
 /// Below this product of ggxAlpha and |eta - 1| a refracted lobe is narrower than its half vector can be computed.
 constexpr float kDeltaRefraction = 2e-5f;
+/// A film may reflect this much more than its mean over few facets says.
+constexpr float kFilmMargin = 1.01f;
+/// Mean losses below this are none.
+constexpr float kLeastLoss = 1e-7f;
 /// Below this a highlight is not stretched.
 constexpr float kLeastAnisotropy = 1e-3f;
+
+using NarrowLattice = FibonacciLattice<34, 21>;
+using WideLattice = FibonacciLattice<144, 89>;
+using WidestLattice = FibonacciLattice<987, 610>;
 
 /// To [0, limit]; not a number becomes 0.
 Vec3 nonNegative(const Vec3& c, float limit) { return saturate(c / limit) * limit; }
@@ -53,6 +61,7 @@ BaseBsdf::BaseBsdf(const BsdfInputs& inputs, const Vec3& wo) : wo_(usableDirecti
     const Vec3 baseColor = saturate(inputs.baseColor), specularColor = nonNegative(inputs.specularColor, 1e4f);
 
     setFacets(inputs, saturate(inputs.roughness));
+    schlickO_ = schlickTowards(opaque > 0);
     solid_ = inputs.solid;
 
     const Vec3 layerF0 = glm::min(sqr((ior - 1) / (ior + 1)) * specularColor, Vec3(1)) * specular;
@@ -75,7 +84,7 @@ BaseBsdf::BaseBsdf(const BsdfInputs& inputs, const Vec3& wo) : wo_(usableDirecti
         boundaryTint_ = inside ? Vec3(boundary) : boundary * glm::min(specular * specularColor, Vec3(1));
         transmissionTint_ = boundary * (solid_ ? glm::sqrt(baseColor) : baseColor);
     }
-    setSpecular(inside);
+    setSpecular(inside, inputs.multipleScattering);
     if (hasFilm_) applyFilm();
     if (opaque > 0) {
         if (hasFilm_) setDiffuseUnderFilm(opaque * baseColor, specular);
@@ -115,51 +124,123 @@ void BaseBsdf::setMultiple(float share) {
         const float bare = schlickMean(f0_[c], f90_) / share;
         multiple_[c] = share * manyBounces(std::min(bare + (film[c] * f90_ / share - bare) * filmShare_, 1.0f), eavg);
     }
-    multipleAlbedo_ = multiple_ * multipleBelow(wo_);
-    multipleScale_ = multipleAlbedo_ * (kInvPi / std::max(1 - eavg, 1e-4f));
+    multipleAlbedo_ = multiple_ * std::max(0.0f, 1 - schlickO_.x - schlickO_.y);
+    multipleScale_ = multipleAlbedo_ * (kInvPi / std::max(1 - eavg, kLeastLoss));
+}
+
+/// Gives a rough boundary what single scattering loses: to each side in proportion to what its mean Fresnel term
+/// leaves, held where reciprocity wants it. With l the losses of both sides and t the shares that go through,
+/// t_near l_near = n^2 t_far l_far; (1 - Favg) obeys that with n^2 alone, the lesser loss of both adds the rest.
+void BaseBsdf::setBoundaryMultiple(const Vec2& once) {
+    const float alphaRoughness = std::sqrt(ggx_.alpha);
+    float lost, mean, meanFar, fresnel;
+    if (near_) {
+        lost = near_->returned(boundaryRow_, {ggx_.alpha, wo_.z});
+        mean = near_->averageReturned(alphaRoughness), meanFar = far_->averageReturned(alphaRoughness);
+        fresnel = near_->averageFresnel();
+    } else {
+        const Vec2 average = schlickAverage();
+        lost = 1 - once.x - once.y;
+        mean = meanFar = std::max(1 - average.x - average.y, kLeastLoss);
+        fresnel = DielectricAlbedo::get(eta_, true).averageFresnel();
+    }
+    const float through = (1 - fresnel) * std::min(1.0f, meanFar / mean);
+    Vec3 reflected(1 - through), passed(through);
+    if (hasFilm_) {
+        const Vec3 film = film_.averageReflectance();
+        reflected += (film - reflected) * filmShare_;
+        passed *= 1 - filmShare_ + filmShare_ * (1 - maxComponent(film)) / std::max(1 - fresnel, 1e-6f);
+    }
+    const Vec3 above = boundaryTint_ * reflected * lost;
+    throughAlbedo_ = transmissionTint_ * passed * lost;
+    multipleAlbedo_ += above;
+    boundaryScale_ = above * (kInvPi / mean);
+    throughScale_ = throughAlbedo_ * (kInvPi / meanFar);
 }
 
 void BaseBsdf::setDiffuse(const Vec3& rho, float f0, float f90) {
     layerF0_ = f0 - layerMultiple_, layerF90_ = f90 - layerMultiple_;
     const Vec2 fresnel(layerF0_, layerF90_);
     const Vec2 mean = schlickAverage();
-    const float below = std::max(0.0f, 1 - (glm::dot(schlickAlbedo(wo_), fresnel) + layerMultiple_));
+    const float below = std::max(0.0f, 1 - (glm::dot(schlickO_, fresnel) + layerMultiple_));
     albedo_[kDiffuse] = rho * below;
     diffuseScale_ = albedo_[kDiffuse] * (kInvPi / std::max(1 - (glm::dot(mean, fresnel) + layerMultiple_), 1e-4f));
 }
 
 void BaseBsdf::setDiffuseUnderFilm(const Vec3& rho, float specular) {
-    const Vec2 schlick = schlickAlbedo(wo_);
+    const Vec2 schlick = schlickO_;
     const float bare = glm::dot(schlick, Vec2(maxComponent(f0_), f90_));
-    const float film = specular * maxComponent(filmAlbedo_) * (schlick.x + schlick.y);
+    const float film = kFilmMargin * specular * maxComponent(filmAlbedo_) * (schlick.x + schlick.y);
     const float many = std::max(layerMultiple_, maxComponent(multiple_)) * (1 - schlick.x - schlick.y);
     layerMultiple_ = 0;
     albedo_[kDiffuse] = rho * std::max(0.0f, 1 - (bare + (film - bare) * filmShare_ + many));
     diffuseScale_ = albedo_[kDiffuse] * kInvPi;
 }
 
-void BaseBsdf::setSpecular(bool inside) {
-    const Vec2 schlick = schlickAlbedo(wo_);
-    albedo_[kReflection] = f0_ * schlick.x + Vec3(f90_ * schlick.y);
-    deltaTransmission_ = smooth_;
+void BaseBsdf::setSpecular(bool inside, bool multiple) {
+    albedo_[kReflection] = f0_ * schlickO_.x + Vec3(f90_ * schlickO_.y);
+    deltaTransmission_ = smooth_ || (hasBoundary_ && solid_ && ggx_.alpha * std::abs(eta_ - 1) < kDeltaRefraction);
     if (!hasBoundary_) return;
-
-    Vec2 boundary;  // reflected, transmitted
-    if (smooth_) {
-        boundary.x = fresnelDielectric(wo_.z, eta_);
-        boundary.y = 1 - boundary.x;
-    } else {
-        boundary = DielectricAlbedo::get(inside ? 1 / eta_ : eta_, !inside).directional(row_, wo_.z);
-        if (!solid_) boundary.y = std::max(0.0f, schlick.x + schlick.y - boundary.x);
-        deltaTransmission_ = solid_ && ggx_.alpha * std::abs(eta_ - 1) < kDeltaRefraction;
+    boundaryRow_ = RoughnessRow(std::sqrt(ggx_.alpha), DielectricAlbedo::kRows);
+    if (solid_ && !deltaTransmission_ && !ggx_.isAnisotropic()) {
+        const float ior = inside ? 1 / eta_ : eta_;
+        near_ = &DielectricAlbedo::get(ior, !inside), far_ = &DielectricAlbedo::get(ior, inside);
     }
-    albedo_[kReflection] += boundaryTint_ * boundary.x;
-    albedo_[kTransmission] = transmissionTint_ * boundary.y;
+    const Vec2 once = boundaryAlbedo(inside);
+    albedo_[kReflection] += boundaryTint_ * once.x;
+    albedo_[kTransmission] = transmissionTint_ * once.y;
+    // Stretched facets of a solid have no table of losses: they keep to single scattering.
+    const bool tabled = near_ || !solid_;
+    if (multiple && !deltaTransmission_ && tabled) setBoundaryMultiple(once);
+}
+
+/// What the boundary reflects and transmits of light that meets one facet.
+Vec2 BaseBsdf::boundaryAlbedo(bool inside) const {
+    if (smooth_) {
+        const float reflected = fresnelDielectric(wo_.z, eta_);
+        return {reflected, 1 - reflected};
+    }
+    Vec2 once;
+    if (ggx_.isAnisotropic()) {
+        once = stretchedBoundaryAlbedo();
+    } else {
+        // The table of losses is the better one.
+        const float most = near_ ? 1 - near_->lost(boundaryRow_, {ggx_.alpha, wo_.z}) : schlickO_.x + schlickO_.y;
+        once.x = std::min(DielectricAlbedo::get(inside ? 1 / eta_ : eta_, !inside).reflected(boundaryRow_, wo_.z), most);
+        once.y = most - once.x;
+    }
+    if (deltaTransmission_) return {once.x, 1 - once.x};
+    // A thin wall passes on in the mirrored direction what its outer face does not reflect.
+    return solid_ ? once : Vec2(once.x, std::max(0.0f, schlickO_.x + schlickO_.y - once.x));
+}
+
+/// The same of stretched facets, by quadrature; total reflection makes a kink, which wants a finer one.
+Vec2 BaseBsdf::stretchedBoundaryAlbedo() const {
+    const auto atFacet = [&](const Vec3& h) {
+        const float f = fresnelDielectric(std::min(glm::dot(wo_, h), 1.0f), eta_);
+        const float reflected = f * reflectedShare(ggx_, wo_, lambdaO_, h);
+        Vec3 wi;
+        if (!solid_ || f == 1 || !refract(wo_, h, eta_, wi) || wi.z >= 0) return Vec2(reflected, 0);
+        return Vec2(reflected, (1 - f) * (1 + lambdaO_) * maskingBothSides(lambdaO_, ggx_.lambda(wi)));
+    };
+    return eta_ < 1 ? meanOverVisibleNormals<WidestLattice>(ggx_, wo_, atFacet)
+                    : meanOverVisibleNormals<WideLattice>(ggx_, wo_, atFacet);
+}
+
+/// Albedo towards wo under Schlick's term. The table of stretched facets knows its sum better than how it divides, which
+/// a diffuse base must not be too bright for.
+Vec2 BaseBsdf::schlickTowards(bool dividedWell) const {
+    const Vec2 tabled = schlickAlbedo(wo_);
+    if (!dividedWell || !ggx_.isAnisotropic()) return tabled;
+    const Vec2 found = meanOverVisibleNormals<WideLattice>(ggx_, wo_, [&](const Vec3& h) {
+        return reflectedShare(ggx_, wo_, lambdaO_, h) * Vec2(1, schlickWeight(glm::dot(wo_, h)));
+    });
+    const float sum = tabled.x + tabled.y, grazing = found.x > 0 ? sum * std::min(found.y / found.x, 1.0f) : 0;
+    return {sum - grazing, grazing};
 }
 
 /// Exchanges the film's share of albedos for what the film reflects, by a mean over the facets that wo sees.
 void BaseBsdf::applyFilm() {
-    const Vec2 schlick = schlickAlbedo(wo_);
     const auto atFacet = [&](float cosTheta, float share) {
         FilmSums sums;
         const Vec3 reflectance = film_.reflectance(std::min(cosTheta, 1.0f));
@@ -171,14 +252,18 @@ void BaseBsdf::applyFilm() {
         sums.bareThrough = passed * (1 - fresnelDielectric(std::min(cosTheta, 1.0f), eta_));
         return sums;
     };
-    const FilmSums sums = smooth_ ? atFacet(wo_.z, 1) : meanOverVisibleNormals<FibonacciLattice<34, 21>>(ggx_, wo_, [&](const Vec3& h) {
+    const FilmSums sums = smooth_ ? atFacet(wo_.z, 1) : meanOverVisibleNormals<NarrowLattice>(ggx_, wo_, [&](const Vec3& h) {
         return atFacet(glm::dot(wo_, h), reflectedShare(ggx_, wo_, lambdaO_, h));
     });
     filmAlbedo_ = sums.all > 0 ? sums.reflected / sums.all : Vec3(0);
-    const Vec3 film = filmReflecting_ * filmAlbedo_ * (schlick.x + schlick.y);
-    albedo_[kReflection] = albedo_[kReflection] * (1 - filmShare_) + film;
-    const float through = sums.bareThrough > 0 ? sums.through / sums.bareThrough : 0;
-    albedo_[kTransmission] *= 1 - filmShare_ + filmShare_ * through;
+    const float facets = schlickO_.x + schlickO_.y;
+    albedo_[kReflection] = albedo_[kReflection] * (1 - filmShare_) + filmReflecting_ * filmAlbedo_ * facets;
+    if (!hasBoundary_) return;
+    // A thin wall passes on what facets see of it; of a solid, the bare boundary's albedo is scaled.
+    const Vec3 under = solid_ ? albedo_[kTransmission] * (sums.through / std::max(sums.bareThrough, 1e-12f))
+                              : transmissionTint_ * (facets * sums.through / std::max(sums.all, 1e-12f));
+    const Vec3 left = glm::max(Vec3(1) - albedo_[kReflection] - multipleAlbedo_ - throughAlbedo_, Vec3(0));
+    albedo_[kTransmission] = glm::min(albedo_[kTransmission] * (1 - filmShare_) + under * filmShare_, left);
 }
 
 }  // namespace lumi

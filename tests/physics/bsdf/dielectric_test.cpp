@@ -11,13 +11,14 @@
 namespace lumi::test {
 namespace {
 
-BsdfInputs glass(float roughness, bool entering = true, float ior = 1.5f) {
+BsdfInputs glass(float roughness, bool entering = true, float ior = 1.5f, bool many = false) {
     BsdfInputs inputs;
     inputs.transmission = 1;
     inputs.solid = true;
     inputs.roughness = roughness;
     inputs.entering = entering;
     inputs.ior = ior;
+    inputs.multipleScattering = many;
     return inputs;
 }
 
@@ -105,18 +106,20 @@ TEST(Dielectric, RoughLossIsBounded) {
 // With radiance over the square of the index transported, f(out, in) / n_in^2 = f(in, out) / n_out^2.
 TEST(Dielectric, RefractionIsReciprocal) {
     int compared = 0;
-    for (uint32_t i = 0; i < 500; ++i) {
+    for (uint32_t i = 0; i < 1000; ++i) {
+        const bool many = i >= 500;
         const SampleStream stream(SamplerKind::Independent, 0, 13, {9, 9, i});
         const Vec3 wo = directionAt(0.1f + 0.9f * stream.get1(0));
-        const BsdfSample s = Bsdf(glass(0.5f), wo).sample(0.999f, stream.get2(2));
+        const BsdfSample s = Bsdf(glass(0.5f, true, 1.5f, many), wo).sample(0.999f, stream.get2(2));
         if (s.lobe != Lobe::SpecularTransmission || s.wi.z > -0.05f) continue;
         const Vec3 backWo(s.wi.x, s.wi.y, -s.wi.z), backWi(wo.x, wo.y, -wo.z);
-        const float there = Bsdf(glass(0.5f), wo).evaluate(s.wi, Lobe::SpecularTransmission).x / -s.wi.z;
-        const float back = Bsdf(glass(0.5f, false), backWo).evaluate(backWi, Lobe::SpecularTransmission).x / wo.z;
-        ASSERT_NEAR(there / (1.5f * 1.5f * back), 1, 2e-3f);
+        const Bsdf thereBsdf(glass(0.5f, true, 1.5f, many), wo), backBsdf(glass(0.5f, false, 1.5f, many), backWo);
+        const float there = thereBsdf.evaluate(s.wi, Lobe::SpecularTransmission).x / -s.wi.z;
+        const float back = backBsdf.evaluate(backWi, Lobe::SpecularTransmission).x / wo.z;
+        ASSERT_NEAR(there / (1.5f * 1.5f * back), 1, 2e-3f) << many;
         ++compared;
     }
-    EXPECT_GT(compared, 300);
+    EXPECT_GT(compared, 600);
 }
 
 /// Weight of a path from outside at `origin` along `direction` through a unit glass sphere in a furnace of radiance 1.
@@ -145,20 +148,20 @@ double spherePath(const BsdfInputs& material, Vec3 origin, Vec3 direction, const
     return 0;
 }
 
-RunningMoments sphereFurnace(float roughness, uint32_t paths) {
+RunningMoments sphereFurnace(const BsdfInputs& material, uint32_t paths) {
     RunningMoments moments;
     for (uint32_t i = 0; i < paths; ++i) {
         const SampleStream stream(SamplerKind::Independent, 0, 19, {1, 1, i});
         const Vec2 u = stream.get2(0);
         const float r = std::sqrt(u.x), phi = 2 * kPi * u.y;
         const Vec3 origin(r * std::cos(phi), r * std::sin(phi), 3);
-        moments.add(spherePath(glass(roughness), origin, {0, 0, -1}, {2, 3, i}, 400));
+        moments.add(spherePath(material, origin, {0, 0, -1}, {2, 3, i}, 400));
     }
     return moments;
 }
 
 TEST(Dielectric, SmoothSphereVanishesInFurnace) {
-    const RunningMoments m = sphereFurnace(0, 20000);
+    const RunningMoments m = sphereFurnace(glass(0), 20000);
     EXPECT_NEAR(m.mean(), 1, std::max(4 * std::sqrt(m.meanVariance()), 1e-4));
     EXPECT_LT(std::sqrt(m.meanVariance()), 0.01);
 }
@@ -166,10 +169,41 @@ TEST(Dielectric, SmoothSphereVanishesInFurnace) {
 TEST(Dielectric, RoughSphereNeverGlows) {
     double previous = 1;
     for (const float roughness : {0.1f, 0.4f, 0.8f}) {
-        const RunningMoments m = sphereFurnace(roughness, 20000);
+        const RunningMoments m = sphereFurnace(glass(roughness), 20000);
         EXPECT_LE(m.mean(), previous + 4 * std::sqrt(m.meanVariance())) << roughness;
         EXPECT_GE(m.mean(), 0.4) << roughness;
         previous = m.mean();
+    }
+}
+
+// With what facets scatter more than once nothing is lost: every side of every boundary is white, and so is the sphere.
+TEST(Dielectric, WhiteGlassIsOne) {
+    for (const float ior : {1.1f, 1.5f, 2.4f})
+        for (const bool entering : {true, false})
+            for (const float cosTheta : {1.0f, 0.7f, 0.4f, 0.1f})
+                for (const float roughness : {0.03f, 0.1f, 0.3f, 0.5f, 0.8f, 1.0f}) {
+                    const BsdfInputs inputs = glass(roughness, entering, ior, true);
+                    const Vec3 wo = directionAt(cosTheta);
+                    const Bsdf bsdf(inputs, wo);
+                    EXPECT_NEAR(bsdf.specularAlbedo().x, 1, 2e-3f);
+                    RunningMoments m;
+                    for (uint32_t i = 0; i < 8192; ++i) {
+                        const SampleStream stream(SamplerKind::Independent, 0, 23, {5, 4, i});
+                        m.add(bsdf.sample(stream.get1(0), stream.get2(2)).weight.x);
+                    }
+                    const double error = 4.5 * std::sqrt(m.meanVariance());
+                    EXPECT_LE(m.mean(), 1 + 1e-3 + error) << ior << entering << cosTheta << " " << roughness;
+                    EXPECT_GE(m.mean(), 1 - 0.01 - error) << ior << entering << cosTheta << " " << roughness;
+                }
+}
+
+TEST(Dielectric, RoughSphereVanishesInFurnace) {
+    for (const float roughness : {0.1f, 0.3f, 0.6f, 1.0f}) {
+        const RunningMoments m = sphereFurnace(glass(roughness, true, 1.5f, true), 100000);
+        const double error = std::sqrt(m.meanVariance());
+        EXPECT_LT(error, 0.003) << roughness;
+        EXPECT_NEAR(m.mean(), 1, 0.01) << roughness;
+        EXPECT_LE(m.mean(), 1 + 1e-3 + 3 * error) << roughness;
     }
 }
 

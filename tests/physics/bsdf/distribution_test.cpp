@@ -5,6 +5,7 @@
 
 #include "math/statistics.h"
 #include "physics/bsdf/materials.h"
+#include "trace/albedo_table.h"
 #include "trace/sampler.h"
 
 namespace lumi::test {
@@ -68,6 +69,15 @@ double deltaShare(const Bsdf& bsdf, const BsdfInputs& inputs) {
     return onTop + bsdf.probability(Lobe::SpecularReflection) + bsdf.probability(Lobe::SpecularTransmission);
 }
 
+/// Mirrors lose no sample. Facets of a coat lose those that reflect downwards, and those weigh nothing in its albedo while
+/// the others weigh 1 at most: what facets that reflect everything lack bounds them.
+double mostLostByCoat(const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo) {
+    const float roughness = inputs.layers.clearcoatRoughness;
+    if (roughness < Bsdf::kDeltaRoughness) return 0;
+    const Vec2 all = SchlickAlbedo::get().directional(RoughnessRow(roughness), {sqr(roughness), wo.z});
+    return bsdf.probability(Lobe::Clearcoat) * (1 - all.x - all.y);
+}
+
 // Directions fall as pdf says, in cells of the whole sphere; deltas and absorbed samples are two more cells. That the
 // pdf integrates to what is neither is part of it: cells and shares must add up to 1.
 TEST(BsdfDistribution, ChiSquare) {
@@ -75,8 +85,8 @@ TEST(BsdfDistribution, ChiSquare) {
     const std::vector<float> roughnesses{0, 0.2f, 0.5f, 1}, cosines{0.95f, 0.5f, 0.15f};
     const auto tests = static_cast<int64_t>(materials().size() * roughnesses.size() * cosines.size());
     const double level = sidakLevel(0.01, tests);
-    forEachBsdf(roughnesses, cosines, [&](const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3&, const auto& label) {
-        // A needle of a lobe: too narrow for the cells' quadrature.
+    forEachBsdf(roughnesses, cosines, [&](const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo, const auto& label) {
+        // A needle of a lobe, too narrow for these cells: NarrowLobesInTheirOwnCells has it.
         if (inputs.roughness == 0 && inputs.layers.anisotropy > 0) return;
         std::vector<double> observed(kCells + 2), expected(kCells + 2);
         double integral = 0;
@@ -96,7 +106,8 @@ TEST(BsdfDistribution, ChiSquare) {
         // What is absorbed has no density of its own: what the others leave.
         const double absorbed = 1 - integral - deltaShare(bsdf, inputs);
         EXPECT_GE(absorbed, -2e-4) << label;
-        EXPECT_LE(absorbed, inputs.roughness == 0 && !inputs.layered ? 2e-4 : 1) << label;
+        const double most = inputs.roughness == 0 ? mostLostByCoat(bsdf, inputs, wo) + 2e-4 : 1;
+        EXPECT_LE(absorbed, most) << label;
         expected[kCells] = std::max(absorbed, 0.0) * kSamples;
         if (expected[kCells] < 0.1) {
             EXPECT_LE(observed[kCells], 3) << label;
@@ -104,6 +115,53 @@ TEST(BsdfDistribution, ChiSquare) {
         }
         EXPECT_GT(chiSquareTest(observed, expected), level) << label;
     });
+}
+
+// Lobes too narrow for cells of directions, in cells of the facets that make them: even shares of the normals' own
+// distribution, by azimuth. Whatever does not reflect is one more cell. Broad lobes are left out: they fall into the few
+// steepest facets.
+TEST(BsdfDistribution, NarrowLobesInTheirOwnCells) {
+    constexpr int kSamples = 20000, kShares = 8, kTurns = 12, kInner = 32;
+    const std::vector<float> roughnesses{0, 0.02f, 0.05f, 0.1f};
+    const double level = sidakLevel(0.01, 200);
+    const auto check = [&](const Bsdf&, const BsdfInputs& given, const Vec3& wo, const std::string& label) {
+        BsdfInputs inputs = given;
+        inputs.multipleScattering = false;
+        Bsdf bsdf(inputs, wo);
+        bsdf.keep(false, true);
+        if (bsdf.probability(Lobe::SpecularReflection) == 0) return;
+        const bool stretched = inputs.layered && inputs.layers.anisotropy > 0;
+        if (inputs.layers.clearcoat > 0 || !isBlack(inputs.layers.sheenColor)) return;
+        if (inputs.roughness < Bsdf::kDeltaRoughness && !stretched) return;
+        const Facets facets(inputs, Lobe::SpecularReflection);
+        std::vector<double> observed(kShares * kTurns + 1), expected(observed.size());
+        double sum = 0;
+        for (int i = 0; i < kShares * kInner; ++i)
+            for (int j = 0; j < kTurns * kInner; ++j) {
+                double density;
+                const double steeper = (i + 0.5) / (kShares * kInner), phi = 2 * M_PI * (j + 0.5) / (kTurns * kInner);
+                const glm::dvec3 h = facets.at(steeper, phi, density), wi = 2 * glm::dot(glm::dvec3(wo), h) * h - glm::dvec3(wo);
+                const double cosFacet = glm::dot(glm::dvec3(wo), h);
+                if (cosFacet <= 0 || wi.z <= 0) continue;
+                const double share = bsdf.evaluate(Vec3(wi)).pdf * 4 * cosFacet / density / (kShares * kTurns * kInner * kInner);
+                expected[static_cast<size_t>(i / kInner * kTurns + j / kInner)] += share * kSamples;
+                sum += share;
+            }
+        for (uint32_t i = 0; i < kSamples; ++i) {
+            const SampleStream stream(SamplerKind::Independent, 0, 21, {3, 2, i});
+            const BsdfSample s = bsdf.sample(stream.get1(0), stream.get2(2));
+            size_t cell = observed.size() - 1;
+            if (s.lobe != Lobe::None && !s.delta && s.wi.z > 0) {
+                const Vec2 at = facets.find(glm::normalize(glm::dvec3(wo) + glm::dvec3(s.wi)));
+                cell = static_cast<size_t>(std::min(int(at.x * kShares), kShares - 1) * kTurns +
+                                           std::min(int(at.y / (2 * kPi) * kTurns), kTurns - 1));
+            }
+            observed[cell] += 1;
+        }
+        expected.back() = std::max(1 - sum, 1e-6) * kSamples;
+        EXPECT_GT(chiSquareTest(observed, expected), level) << label;
+    };
+    forEachBsdf(roughnesses, {0.95f, 0.5f, 0.15f}, check);
 }
 
 TEST(BsdfDistribution, SampleAgreesWithEvaluate) {
@@ -188,8 +246,11 @@ TEST(BsdfDistribution, Reciprocity) {
                     if (layers.iridescence > 0 && lobe == Lobe::Diffuse) continue;
                     const Vec3 ab = Bsdf(inputs, a).evaluate(b, lobe) / b.z;
                     const Vec3 ba = Bsdf(inputs, b).evaluate(a, lobe) / a.z;
+                    // Under stretched facets the share that reaches the base is found by quadrature towards wo, and
+                    // looked up towards wi in a table that is off by up to 0.04.
+                    const bool found = layers.anisotropy > 0 && lobe == Lobe::Diffuse;
                     for (int c = 0; c < 3; ++c)
-                        ASSERT_NEAR(ab[c], ba[c], 1e-3f * ab[c] + 1e-6f) << material.name << " " << roughness;
+                        ASSERT_NEAR(ab[c], ba[c], (found ? 0.05f : 1e-3f) * ab[c] + 1e-6f) << material.name << " " << roughness;
                 }
             }
 }

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "math/statistics.h"
 #include "physics/bsdf/materials.h"
 #include "trace/sampler.h"
 
@@ -20,38 +23,49 @@ const char* nameOf(Lobe lobe) {
     return kNames[static_cast<int>(lobe)];
 }
 
+/// By how much the tables of albedos may say too little, and a surface shine brighter than its furnace (AlbedoTable's
+/// tests hold them to it).
+constexpr double kTableError = 1e-3;
+/// Standard errors that one of some ten thousand means may be off with a chance of 1%.
+constexpr double kSigmas = 4.9;
+
 // In a furnace of radiance 1 a lobe shows its directional albedo; all together never more than arrives.
 TEST(BsdfEnergy, FurnaceBySamplingEqualsAlbedo) {
-    forEachBsdf(kRoughnesses, kCosines, [](const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3&, const std::string& label) {
-        const uint32_t kSamples = inputs.layered ? 65536 : 16384;
-        glm::dvec3 sums[kLobeCount] = {}, total(0);
+    constexpr uint32_t kSamples = 8192;
+    forEachBsdf(kRoughnesses, kCosines, [](const Bsdf& bsdf, const BsdfInputs&, const Vec3&, const std::string& label) {
+        RunningMoments lobes[kLobeCount][3], totals[3];
         for (uint32_t i = 0; i < kSamples; ++i) {
-            const SampleStream stream(SamplerKind::Sobol, 0, 1, {3, 4, i});
+            const SampleStream stream(SamplerKind::Independent, 0, 1, {3, 4, i});
             const BsdfSample s = bsdf.sample(stream.get1(0), stream.get2(2));
-            if (s.lobe == Lobe::None) continue;
-            total += glm::dvec3(s.weight);
+            const bool drawn = s.lobe != Lobe::None;
             for (int lobe = 0; lobe < kLobeCount; ++lobe) {
-                if (s.delta && s.lobe == kLobes[lobe]) sums[lobe] += glm::dvec3(s.weight);
-                if (!s.delta) sums[lobe] += glm::dvec3(bsdf.evaluate(s.wi, kLobes[lobe]) / s.pdf);
+                Vec3 share(0);
+                if (drawn && s.delta && s.lobe == kLobes[lobe]) share = s.weight;
+                if (drawn && !s.delta) share = bsdf.evaluate(s.wi, kLobes[lobe]) / s.pdf;
+                for (int c = 0; c < 3; ++c) lobes[lobe][c].add(share[c]);
             }
+            for (int c = 0; c < 3; ++c) totals[c].add(drawn ? s.weight[c] : 0);
         }
         Vec3 albedos(0);
+        const auto expectAlbedo = [&](const RunningMoments& m, double expected, const std::string& name) {
+            EXPECT_NEAR(m.mean(), expected, 0.01 * std::max(expected, 0.25) + kSigmas * std::sqrt(m.meanVariance())) << name;
+        };
         for (int lobe = 0; lobe < kLobeCount; ++lobe) {
-            expectClose(Vec3(sums[lobe] / double(kSamples)), bsdf.albedo(kLobes[lobe]),
-                        label + ", " + nameOf(kLobes[lobe]));
-            albedos += bsdf.albedo(kLobes[lobe]);
+            const Vec3 albedo = bsdf.albedo(kLobes[lobe]);
+            for (int c = 0; c < 3; ++c) expectAlbedo(lobes[lobe][c], albedo[c], label + ", " + nameOf(kLobes[lobe]));
+            albedos += albedo;
         }
-        expectClose(Vec3(total / double(kSamples)), albedos, label + ", all lobes");
         EXPECT_LE(maxComponent(albedos), 1 + 1e-5f) << label;
-        EXPECT_LE(maxComponent(Vec3(total / double(kSamples))), 1.005f) << label;
+        for (int c = 0; c < 3; ++c) {
+            expectAlbedo(totals[c], albedos[c], label + ", all lobes");
+            EXPECT_LE(totals[c].mean(), 1 + kTableError + kSigmas * std::sqrt(totals[c].meanVariance())) << label;
+        }
     });
 }
 
 TEST(BsdfEnergy, QuadratureOfEvaluateEqualsAlbedo) {
-    forEachBsdf({0.05f, 0.1f, 0.3f, 0.6f, 1}, kCosines,
+    forEachBsdf({0.02f, 0.05f, 0.1f, 0.3f, 0.6f, 1}, kCosines,
                 [](const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo, const std::string& label) {
-                    // Stretched a hundredfold, the midpoint rule's facets are too few.
-                    if (inputs.layers.anisotropy > 0 && inputs.roughness < 0.3f) return;
                     Vec3 total(0);
                     for (const Lobe lobe : kLobes) {
                         if (isBlack(bsdf.albedo(lobe))) continue;
@@ -59,11 +73,12 @@ TEST(BsdfEnergy, QuadratureOfEvaluateEqualsAlbedo) {
                             total += bsdf.albedo(lobe);
                             continue;
                         }
-                        const Vec3 integral = integrateLobe(bsdf, inputs, wo, lobe);
-                        expectClose(integral, bsdf.albedo(lobe), label + ", " + nameOf(lobe));
-                        total += integral;
+                        const LobeIntegral integral = integrateLobe(bsdf, inputs, wo, lobe);
+                        EXPECT_LE(integral.error, 1e-3f) << label << ", " << nameOf(lobe);
+                        expectClose(integral.value, bsdf.albedo(lobe), label + ", " + nameOf(lobe));
+                        total += integral.value;
                     }
-                    EXPECT_LE(maxComponent(total), 1.004f) << label;
+                    EXPECT_LE(maxComponent(total), 1 + kTableError) << label;
                 });
 }
 

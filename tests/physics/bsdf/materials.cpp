@@ -31,7 +31,8 @@ const std::vector<NamedMaterial>& materials() {
         add("bubble from outside", [&](BsdfInputs& i) { i.transmission = 1, i.solid = true, i.ior = 0.75f; });
         add("tinted half glass",
             [&](BsdfInputs& i) { i.transmission = 0.5f, i.solid = true, i.baseColor = red, i.ior = 1.33f; });
-        for (const char* name : {"white metal", "gold", "white plastic", "thin wall", "tinted half glass"}) {
+        for (const char* name : {"white metal", "gold", "white plastic", "thin wall", "tinted thin wall", "glass from outside",
+                                 "glass from inside", "bubble from outside", "tinted half glass"}) {
             const auto same = [&](const NamedMaterial& m) { return m.name == name; };
             NamedMaterial many = *std::find_if(list.begin(), list.end(), same);
             many.name += ", many bounces";
@@ -59,6 +60,15 @@ const std::vector<NamedMaterial>& materials() {
         layered("brushed plastic", [&](BsdfInputs& i, LayerInputs& l) {
             i.baseColor = red, l.anisotropy = 0.4f, l.anisotropyDirection = {-1, 3};
         });
+        layered("brushed white plastic", [&](BsdfInputs& i, LayerInputs& l) {
+            i.multipleScattering = true, l.anisotropy = 0.9f, l.anisotropyDirection = {0.8f, 0.6f};
+        });
+        for (const bool entering : {true, false})
+            layered(entering ? "brushed glass from outside" : "brushed glass from inside",
+                    [&](BsdfInputs& i, LayerInputs& l) {
+                        i.transmission = 1, i.solid = true, i.entering = entering, i.multipleScattering = true;
+                        l.anisotropy = 0.6f;
+                    });
         layered("iridescent metal", [&](BsdfInputs& i, LayerInputs& l) {
             i.metallic = 1, i.baseColor = gold, l.iridescence = 1, l.iridescenceThickness = 450;
             i.multipleScattering = true;
@@ -68,9 +78,11 @@ const std::vector<NamedMaterial>& materials() {
         });
         layered("soap bubble", [&](BsdfInputs& i, LayerInputs& l) {
             i.transmission = 1, l.iridescence = 1, l.iridescenceIor = 1.33f, l.iridescenceThickness = 600;
+            i.multipleScattering = true;
         });
         layered("iridescent glass", [&](BsdfInputs& i, LayerInputs& l) {
             i.transmission = 1, i.solid = true, l.iridescence = 0.8f, l.iridescenceThickness = 250;
+            i.multipleScattering = true;
         });
         return list;
     }();
@@ -95,22 +107,51 @@ void forEachBsdf(const std::vector<float>& roughnesses, const std::vector<float>
             }
 }
 
+Facets::Facets(const BsdfInputs& inputs, Lobe lobe) {
+    const float roughness = lobe == Lobe::Clearcoat ? inputs.layers.clearcoatRoughness : inputs.roughness;
+    alpha_ = sqr(double(std::max(roughness, Bsdf::kDeltaRoughness)));
+    const bool stretched = inputs.layered && inputs.layers.anisotropy > 0 && lobe != Lobe::Clearcoat;
+    along_ = stretched ? (alpha_ + (1 - alpha_) * sqr(double(inputs.layers.anisotropy))) / alpha_ : 1;
+    turn_ = std::atan2(inputs.layers.anisotropyDirection.y, inputs.layers.anisotropyDirection.x);
+}
+
+glm::dvec3 Facets::at(double steeper, double phi, double& density) const {
+    // tan^2 = alpha^2 u / (1 - u) spreads normals as alpha^2 / (pi cos^3 (alpha^2 + tan^2)^2) a solid angle.
+    const double alpha2 = alpha_ * alpha_, tan2 = alpha2 * (1 - steeper) / steeper;
+    const double cosH = 1 / std::sqrt(1 + tan2), sinH = std::sqrt(tan2) * cosH;
+    glm::dvec3 h(sinH * std::cos(phi), sinH * std::sin(phi), cosH);
+    density = alpha2 / (M_PI * cosH * cosH * cosH * sqr(alpha2 + tan2));
+    if (along_ == 1) return h;
+    // Slopes stretched along x spread the density over as much more of them.
+    const double slopeX = h.x / h.z * along_, slopeY = h.y / h.z, c = std::cos(turn_), s = std::sin(turn_);
+    h = glm::normalize(glm::dvec3(slopeX * c - slopeY * s, slopeX * s + slopeY * c, 1));
+    density *= cosH * cosH * cosH / (along_ * h.z * h.z * h.z);
+    return h;
+}
+
+Vec2 Facets::find(const glm::dvec3& h) const {
+    const double c = std::cos(turn_), s = std::sin(turn_), slopeX = (h.x * c + h.y * s) / h.z / along_,
+                 slopeY = (h.y * c - h.x * s) / h.z, alpha2 = alpha_ * alpha_;
+    const double phi = std::atan2(slopeY, slopeX);
+    return Vec2(alpha2 / (alpha2 + slopeX * slopeX + slopeY * slopeY), phi < 0 ? phi + 2 * M_PI : phi);
+}
+
 namespace {
 
-constexpr int kRings = 180, kSectors = 64;
-
-Vec3 integrateHemisphere(const Bsdf& bsdf, Lobe lobe) {
+/// value(wi) over the upper hemisphere (`side` 1) or the lower one (-1).
+template <class Value>
+Vec3 integrateHemisphere(int rings, int sectors, float side, const Value& value) {
     glm::dvec3 sum(0);
-    for (int i = 0; i < kRings; ++i)
-        for (int j = 0; j < kSectors; ++j) {
+    for (int i = 0; i < rings; ++i)
+        for (int j = 0; j < sectors; ++j) {
             // Even in the root of the cosine: the layer above the diffuse base changes fastest at grazing angles.
-            const double x = (i + 0.5) / kRings, z = x * x, phi = 2 * M_PI * (j + 0.5) / kSectors;
+            const double x = (i + 0.5) / rings, z = x * x, phi = 2 * M_PI * (j + 0.5) / sectors;
             const double r = std::sqrt(1 - z * z);
             const Vec3 wi(static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)),
-                          static_cast<float>(z));
-            sum += 2 * x * glm::dvec3(bsdf.evaluate(wi, lobe));
+                          static_cast<float>(z) * side);
+            sum += 2 * x * glm::dvec3(value(wi));
         }
-    return Vec3(sum * (2 * M_PI / (kRings * kSectors)));
+    return Vec3(sum * (2 * M_PI / (double(rings) * sectors)));
 }
 
 /// Direction that facet h makes of wo, and the solid angle it covers for one of h; 0 if there is none.
@@ -132,37 +173,44 @@ double scattered(const glm::dvec3& wo, const glm::dvec3& h, Lobe lobe, const Bsd
     return (eta * ci - c) * (eta * ci - c) / (eta * eta * ci);
 }
 
-}  // namespace
-
-Vec3 integrateLobe(const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo, Lobe lobe) {
-    if (lobe == Lobe::Diffuse || lobe == Lobe::Sheen) return integrateHemisphere(bsdf, lobe);
-    const float roughness = lobe == Lobe::Clearcoat ? inputs.layers.clearcoatRoughness : inputs.roughness;
-    const double alpha = double(roughness) * roughness;
-    const bool stretched = inputs.layered && inputs.layers.anisotropy > 0 && lobe != Lobe::Clearcoat;
-    const double along = stretched ? (alpha + (1 - alpha) * sqr(inputs.layers.anisotropy)) / alpha : 1;
-    const double turn = std::atan2(inputs.layers.anisotropyDirection.y, inputs.layers.anisotropyDirection.x);
+Vec3 integrateFacets(const Bsdf& once, const BsdfInputs& inputs, const Vec3& wo, Lobe lobe, int rings, int sectors) {
+    const Facets facets(inputs, lobe);
     glm::dvec3 sum(0);
-    for (int i = 0; i < kRings; ++i)
-        for (int j = 0; j < kSectors; ++j) {
-            // tan^2 = alpha^2 u / (1 - u) spreads normals as alpha^2 / (pi cos^3 (alpha^2 + tan^2)^2) a solid angle.
-            const double t = (i + 0.5) / kRings, oneMinusU = t * t, u = 1 - oneMinusU;
-            const double tan2 = alpha * alpha * u / oneMinusU, phi = 2 * M_PI * (j + 0.5) / kSectors;
-            const double cosH = 1 / std::sqrt(1 + tan2), sinH = std::sqrt(tan2) * cosH;
-            glm::dvec3 h(sinH * std::cos(phi), sinH * std::sin(phi), cosH);
-            double density =
-                alpha * alpha / (M_PI * cosH * cosH * cosH * (alpha * alpha + tan2) * (alpha * alpha + tan2));
-            if (stretched) {
-                // Slopes stretched along x spread the density over as much more of them.
-                const double slopeX = h.x / h.z * along, slopeY = h.y / h.z;
-                h = glm::normalize(glm::dvec3(slopeX * std::cos(turn) - slopeY * std::sin(turn),
-                                              slopeX * std::sin(turn) + slopeY * std::cos(turn), 1));
-                density *= cosH * cosH * cosH / (along * h.z * h.z * h.z);
-            }
+    for (int i = 0; i < rings; ++i)
+        for (int j = 0; j < sectors; ++j) {
+            const double t = (i + 0.5) / rings;
+            double density;
+            const glm::dvec3 h = facets.at(t * t, 2 * M_PI * (j + 0.5) / sectors, density);
             glm::dvec3 wi;
             const double solidAngle = scattered(wo, h, lobe, inputs, wi);
-            if (solidAngle > 0) sum += glm::dvec3(bsdf.evaluate(Vec3(wi), lobe)) * (2 * t * solidAngle / density);
+            if (solidAngle > 0) sum += glm::dvec3(once.evaluate(Vec3(wi), lobe)) * (2 * t * solidAngle / density);
         }
-    return Vec3(sum / double(kRings * kSectors));
+    return Vec3(sum / (double(rings) * sectors));
+}
+
+}  // namespace
+
+LobeIntegral integrateLobe(const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo, Lobe lobe) {
+    BsdfInputs plain = inputs;
+    plain.multipleScattering = false;
+    const Bsdf once(plain, wo);
+    // Facets much flatter than the highlight is long turn fast about it.
+    const bool stretched = inputs.layered && inputs.layers.anisotropy > 0;
+    // And where total reflection begins there is a kink, with a vertical tangent on one side.
+    const bool kinked = inputs.solid && inputs.entering == (inputs.ior < 1);
+    const int density = stretched ? 12 : kinked ? 4 : 1;
+    const auto by = [&](int rings, int sectors) {
+        if (lobe == Lobe::Diffuse || lobe == Lobe::Sheen)
+            return integrateHemisphere(rings, sectors, 1, [&](const Vec3& wi) { return bsdf.evaluate(wi, lobe); });
+        Vec3 sum = integrateFacets(once, inputs, wo, lobe, rings * (kinked ? 2 : 1), sectors * density);
+        if (inputs.multipleScattering && lobe != Lobe::Clearcoat)
+            sum += integrateHemisphere(rings / 2, 8, lobe == Lobe::SpecularTransmission ? -1 : 1, [&](const Vec3& wi) {
+                return bsdf.evaluate(wi, lobe) - once.evaluate(wi, lobe);
+            });
+        return sum;
+    };
+    const Vec3 fine = by(180, 64), coarse = by(90, 32);
+    return {fine, maxComponent(glm::abs(fine - coarse))};
 }
 
 }  // namespace lumi::test

@@ -27,8 +27,28 @@ constexpr Lobe kLobes[] = {Lobe::Diffuse, Lobe::SpecularReflection, Lobe::Specul
                            Lobe::Sheen};
 constexpr int kLobeCount = 5;
 
-/// Integral of evaluate(wi, lobe) over the sphere by the midpoint rule: over the hemisphere for diffuse lobe and sheen, over
-/// facet normals in proportion to their own distribution (not the visible one that sample() uses) for specular lobes.
-Vec3 integrateLobe(const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo, Lobe lobe);
+/// Normals of a lobe's facets as its distribution spreads them, not as sample() sees them.
+class Facets {
+public:
+    Facets(const BsdfInputs& inputs, Lobe lobe);
+    /// The normal at azimuth `phi` (before stretching) that a share `steeper` in (0,1] of facets is steeper than, and
+    /// how much of (share, azimuth over a turn) a solid angle there holds.
+    glm::dvec3 at(double steeper, double phi, double& density) const;
+    /// The reverse: (steeper, phi in [0, 2 pi]).
+    Vec2 find(const glm::dvec3& h) const;
+
+private:
+    double alpha_, along_, turn_;
+};
+
+/// Integral of evaluate(wi, lobe) over the sphere.
+struct LobeIntegral {
+    Vec3 value{0};
+    float error = 0;  ///< by how much it changes when every other ring and sector is left out
+};
+
+/// By the midpoint rule: over the hemisphere for diffuse lobe, sheen and what facets scatter more than once; over facet
+/// normals in proportion to their own distribution (not the visible one that sample() uses) for what they scatter once.
+LobeIntegral integrateLobe(const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo, Lobe lobe);
 
 }  // namespace lumi::test

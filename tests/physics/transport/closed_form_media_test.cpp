@@ -67,8 +67,9 @@ Material glass(float roughness) {
 }
 
 TEST(Furnace, GlassSphereIsInvisible) {
-    // The rough boundary's compensation is good to 1% a passage, and there are two.
-    for (const auto& [roughness, tolerance] : {std::pair(0.0f, 0.003), std::pair(0.3f, 0.02)}) {
+    // What facets scatter more than once is given back but for the tables' margin of 0.0015 a meeting inside; at a mean
+    // internal reflectance of 0.6 a path has two and a half of these.
+    for (const auto& [roughness, tolerance] : {std::pair(0.0f, 0.003), std::pair(0.3f, 0.005), std::pair(0.8f, 0.005)}) {
         TinyScene tiny;
         tiny.add(facetedSphere(1, 48), glass(roughness));
         tiny.scene.environment.constant = Vec3(1);
