@@ -190,7 +190,7 @@ private:
     void addCompare() {
         CLI::App* app = compare_ = app_.add_subcommand("compare", "Measure how far an image is from its reference");
         CompareOptions& compare = line_.compare;
-        app->add_option("image", compare.image, "Image to judge: .exr, .hdr, .png, .jpg, .bmp or .tga")
+        app->add_option("image", compare.image, "Image to judge: .exr, .hdr, .png, .jpg, .bmp or .tga; frames as a.%04d.exr")
             ->required()
             ->type_name("IMAGE");
         app->add_option("reference", compare.reference, "What it should be, of the same size")
@@ -208,6 +208,10 @@ private:
             ->type_name("EV")
             ->check(CLI::Range(-100.0, 100.0).description(""))
             ->take_last();
+        app->add_option("--flip-exposures", flipExposures_, "Exposure range of HDR-FLIP in stops (what the reference says)")
+            ->type_name("START,STOP[,COUNT]")->take_last();
+        app->add_option("--frames", compareFrames_, "Of frames: 0..N-1, or A..B without B (those there are)")
+            ->type_name("N|A..B")->take_last();
         addMachine(*app, line_.machine, true);
         app->footer(compareFooter());
     }
@@ -322,6 +326,11 @@ private:
         line_.command = Command::Compare;
         line_.compare.metrics = splitList(metrics_);
         if (!crop_.empty()) line_.compare.crop = parseCrop(crop_, "--crop");
+        if (!flipExposures_.empty()) line_.compare.flipExposures = parseFlipExposures(flipExposures_, "--flip-exposures");
+        if (!compareFrames_.empty()) {
+            const FrameRange frames = parseFrames(compareFrames_);
+            line_.compare.frames = {frames.begin, frames.end};
+        }
         line_.compare.json = line_.machine.json;
         line_.compare.quiet = line_.machine.quiet;
     }
@@ -348,7 +357,7 @@ private:
     CommandLine line_;
     SharedText windowText_, renderText_, referenceText_, infoText_, viewText_;
     SceneOptions viewScene_;
-    std::string infoScene_, samples_, referenceFrames_, metrics_, crop_, frames_, warmUp_, progress_ = "auto", windowSize_;
+    std::string flipExposures_, compareFrames_, infoScene_, samples_, referenceFrames_, metrics_, crop_, frames_, warmUp_, progress_ = "auto", windowSize_;
     bool offscreen_ = false;
 };
 

@@ -1,16 +1,15 @@
-#include "app/compare_command.h"
+#include "app/compare_parts.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "frame/display.h"
 #include "image/exr.h"
 #include "image/hdr.h"
 #include "image/png.h"
-#include "measure/measure.h"
+#include "measure/metrics.h"
 
 namespace lumi {
 namespace {
@@ -37,34 +36,64 @@ Image luminanceMask(const Image& rgb) {
     return mask;
 }
 
-ImagePair loadPair(const CompareOptions& options) {
+}  // namespace
+
+Image croppedAs(const CompareOptions& options, const Image& image) {
+    return options.crop && !image.empty() ? cropped(image, *options.crop, "--crop") : image;
+}
+
+ImagePair loadPair(const CompareOptions& options, const std::filesystem::path& image, const std::filesystem::path& reference) {
     ImagePair pair;
-    pair.image = loadImage(options.image);
-    pair.reference = loadImage(options.reference);
+    pair.image = loadImage(image);
+    pair.reference = loadImage(reference);
     if (!options.mask.empty()) pair.mask = luminanceMask(loadImage(options.mask));
     pair.exposureEv = options.exposureEv;
-    if (!(pair.image.extent() == pair.reference.extent())) pair.prepare(options.image.string());  // throws
+    pair.flipExposures = options.flipExposures;
+    if (!(pair.image.extent() == pair.reference.extent())) pair.prepare(image.string());  // throws
     if (options.crop) {
-        pair.image = cropped(pair.image, *options.crop, "--crop");
-        pair.reference = cropped(pair.reference, *options.crop, "--crop");
-        if (!pair.mask.empty()) pair.mask = cropped(pair.mask, *options.crop, "--crop");
+        // Exposures belong to the whole reference, whichever part of it is looked at.
+        if (!pair.flipExposures) pair.flipExposures = flipExposures(pair.reference);
+        pair.image = croppedAs(options, pair.image);
+        pair.reference = croppedAs(options, pair.reference);
+        pair.mask = croppedAs(options, pair.mask);
     }
-    pair.prepare(options.image.string());
+    pair.prepare(image.string());
     return pair;
 }
 
-/// The error map as it is (.exr) and in false colour (.png).
-void writeMap(const std::filesystem::path& folder, const Metric& metric, const Image& map) {
+void writeMap(const std::filesystem::path& folder, const std::string& name, const char* colours, const Image& map) {
     ExrLayers layers;
     layers.add("", "Y", map);
-    writeExr(folder / (std::string(metric.id) + ".exr"), layers);
+    writeExr(folder / (name + ".exr"), layers);
     DisplaySettings settings;
     Image8 picture;
-    convert(map, "Y", metric.mapColours, settings, picture);
-    writePng(folder / (std::string(metric.id) + ".png"), picture);
+    convert(map, "Y", colours, settings, picture);
+    writePng(folder / (name + ".png"), picture);
 }
 
-void printTable(const ImagePair& pair, const std::vector<std::pair<const Metric*, Measurement>>& results, bool quiet) {
+MetricResults measureAll(const CompareOptions& options, const std::vector<const Metric*>& metrics, const ImagePair& pair,
+                         const std::string& suffix) {
+    MetricResults results;
+    for (const Metric* metric : metrics) {
+        const bool map = !options.maps.empty() && metric->mapColours;
+        results.emplace_back(metric, metric->measure(pair, map));
+        if (map) writeMap(options.maps, metric->id + suffix, metric->mapColours, results.back().second.map);
+    }
+    return results;
+}
+
+nlohmann::ordered_json jsonOf(const MetricResults& results) {
+    nlohmann::ordered_json values, details = nlohmann::ordered_json::object();
+    for (const auto& [metric, result] : results) {
+        values[metric->id] = result.value;
+        for (const auto& [name, value] : result.details) details[metric->id][name] = value;
+    }
+    return {{"metrics", values}, {"details", details}};
+}
+
+namespace {
+
+void printTable(const ImagePair& pair, const MetricResults& results, bool quiet) {
     for (const auto& [metric, result] : results) {
         fmt::print("{:<10} {:<12.6g} {}\n", metric->id, result.value, metric->definition);
         for (const auto& [name, value] : result.details) fmt::print("{:<10} {} = {:.6g}\n", "", name, value);
@@ -76,33 +105,24 @@ void printTable(const ImagePair& pair, const std::vector<std::pair<const Metric*
 }  // namespace
 
 int runCompare(const CompareOptions& options) {
+    if (isSequence(options)) return runCompareSequence(options);
+    if (options.frames) throwUsage({"one image has no frames", "--frames", "images called like frame.%04d.exr", ""});
     std::vector<const Metric*> wanted;
     for (const std::string& id : options.metrics) wanted.push_back(&findMetric(id, "--metrics"));
     if (wanted.empty())
         for (const Metric& metric : metricCatalog()) wanted.push_back(&metric);
 
-    const ImagePair pair = loadPair(options);
+    const ImagePair pair = loadPair(options, options.image, options.reference);
     if (!options.maps.empty()) std::filesystem::create_directories(options.maps);
-    std::vector<std::pair<const Metric*, Measurement>> results;
-    for (const Metric* metric : wanted) {
-        const bool map = !options.maps.empty() && metric->mapColours;
-        results.emplace_back(metric, metric->measure(pair, map));
-        if (map) writeMap(options.maps, *metric, results.back().second.map);
-    }
+    const MetricResults results = measureAll(options, wanted, pair, "");
     if (!options.json) {
         printTable(pair, results, options.quiet);
         return 0;
     }
-    nlohmann::ordered_json values, details = nlohmann::ordered_json::object();
-    for (const auto& [metric, result] : results) {
-        values[metric->id] = result.value;  // infinity and NaN become null
-        for (const auto& [name, value] : result.details) details[metric->id][name] = value;
-    }
-    const nlohmann::ordered_json report = {{"width", pair.image.width()},
-                                           {"height", pair.image.height()},
-                                           {"nonfinite_pixels", pair.nonFinitePixels},
-                                           {"metrics", values},
-                                           {"details", details}};
+    nlohmann::ordered_json report = {{"width", pair.image.width()},
+                                     {"height", pair.image.height()},
+                                     {"nonfinite_pixels", pair.nonFinitePixels}};
+    report.update(jsonOf(results));
     fmt::print("{}\n", report.dump(2));
     return 0;
 }

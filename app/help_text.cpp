@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "measure/measure.h"
+#include "measure/temporal.h"
 #include "reconstruct/catalog.h"
 #include "scene/load.h"
 
@@ -28,6 +29,8 @@ std::string moduleList() {
 std::string metricList() {
     std::string text = "Metrics:\n";
     for (const Metric& metric : metricCatalog()) text += fmt::format("  {:<14}{}\n", metric.id, metric.title);
+    text += "Of frames also:\n";
+    for (const SequenceMetric& metric : sequenceMetricCatalog()) text += fmt::format("  {:<22}{}\n", metric.id, metric.title);
     return text;
 }
 
@@ -87,7 +90,8 @@ std::string referenceFooter() {
 std::string compareFooter() {
     return "Examples:\n"
            "  lumiscope compare noisy.exr reference.exr\n"
-           "  lumiscope compare noisy.exr reference.exr --metrics rmse,flip --maps errors --crop 0,0,256,256\n\n" +
+           "  lumiscope compare noisy.exr reference.exr --metrics rmse,flip --maps errors --crop 0,0,256,256\n"
+           "  lumiscope compare out.%04d.exr ref.%04d.exr --metrics relmse,temporal_reprojected,lag\n\n" +
            metricList() + "\n" + kExitCodes;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "base/error.h"
 #include "session/document.h"
@@ -62,6 +63,24 @@ std::vector<std::string> splitList(const std::string& text) {
         begin = end + 1;
     }
     return parts;
+}
+
+FlipExposures parseFlipExposures(const std::string& text, const std::string& option) {
+    const char* expected = "START,STOP in stops, or START,STOP,COUNT, as -3,3,5";
+    const std::vector<std::string> parts = splitList(text);
+    const auto number = [&](const std::string& part) {
+        double value = 0;
+        const auto [end, code] = std::from_chars(part.data(), part.data() + part.size(), value);
+        if (code != std::errc() || end != part.data() + part.size() || !(std::abs(value) <= 100))
+            throwUsage({"not understood", option, expected, '"' + text + '"'});
+        return value;
+    };
+    if (parts.size() != 2 && parts.size() != 3) throwUsage({"not understood", option, expected, '"' + text + '"'});
+    FlipExposures range{number(parts[0]), number(parts[1]), 2};
+    if (range.stop < range.start) throwUsage({"not understood", option, expected, '"' + text + '"'});
+    range.count = parts.size() == 3 ? static_cast<int>(std::min<int64_t>(parseWhole(parts[2], option, expected, 1), 1000))
+                                    : std::max(2, static_cast<int>(std::ceil(range.stop - range.start)));
+    return range;
 }
 
 std::array<int, 4> parseCrop(const std::string& text, const std::string& option) {

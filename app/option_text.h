@@ -21,6 +21,8 @@ FrameRange parseFrames(const std::string& text);
 int64_t parseWhole(const std::string& text, const std::string& option, const char* expected, int64_t least);
 /// A..B, half-open, both multiples of 16.
 std::pair<uint64_t, uint64_t> parseSamples(const std::string& text, const std::string& option);
+/// START,STOP or START,STOP,COUNT.
+FlipExposures parseFlipExposures(const std::string& text, const std::string& option);
 /// X,Y,W,H in pixels, with a width and a height.
 std::array<int, 4> parseCrop(const std::string& text, const std::string& option);
 /// The parts between commas; none of an empty text.

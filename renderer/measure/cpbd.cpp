@@ -48,8 +48,9 @@ int extent(const float* row, int width, int x, int step, bool rising) {
 
 }  // namespace
 
-double cpbd(ConstFloatPlane gray) {
+double cpbd(ConstFloatPlane gray, const Image* counted, Image* map) {
     const int w = gray.width, h = gray.height;
+    if (map) map->reset({w, h}, 1);
     if (w < 3 || h < 3) return 0;
     const std::vector<uint8_t> edges = verticalEdges(gray);
     int64_t total = 0, sharp = 0;
@@ -68,10 +69,12 @@ double cpbd(ConstFloatPlane gray) {
             for (int y = by; y < y1; ++y)
                 for (int x = std::max(bx, 1); x < std::min(x1, w - 1); ++x) {
                     if (!edges[static_cast<size_t>(y) * static_cast<size_t>(w) + static_cast<size_t>(x)]) continue;
+                    if (counted && !(counted->at(0, x, y) > 0.5f)) continue;
                     const float* row = gray.row(y);
                     const bool rising = row[x + 1] > row[x - 1];
                     const int width = extent(row, w, x, 1, rising) + extent(row, w, x, -1, !rising);
                     const double blurSeen = 1 - std::exp(-std::pow(width / noticeable, kBeta));
+                    if (map) map->at(0, x, y) = static_cast<float>(blurSeen);
                     ++total;
                     sharp += blurSeen <= kDetectable;
                 }
@@ -79,7 +82,7 @@ double cpbd(ConstFloatPlane gray) {
     return total > 0 ? static_cast<double>(sharp) / static_cast<double>(total) : 0;
 }
 
-Measurement measureCpbd(const ImagePair& pair, bool) {
+Measurement measureCpbd(const ImagePair& pair, bool wantMap) {
     const auto gray = [&](const Image& linear) {
         const Image ldr = ldrImage(linear, pair.exposureEv);
         Image out(ldr.extent(), 1);
@@ -91,8 +94,9 @@ Measurement measureCpbd(const ImagePair& pair, bool) {
     };
     const Image image = gray(pair.image), reference = gray(pair.reference);
     Measurement result;
-    result.value = cpbd(image.plane(0));
-    result.details = {{"reference_cpbd", cpbd(reference.plane(0))}};
+    const Image* counted = pair.valid.empty() ? nullptr : &pair.valid;
+    result.value = cpbd(image.plane(0), counted, wantMap ? &result.map : nullptr);
+    result.details = {{"reference_cpbd", cpbd(reference.plane(0), counted)}};
     return result;
 }
 

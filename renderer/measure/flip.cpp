@@ -24,7 +24,10 @@ Measurement measureFlip(const ImagePair& pair, bool wantMap) {
     const FlipFeatures reference = flipFeatures(displayed(pair.reference, pair.exposureEv));
     Image error = flipError(test, reference);
     result.value = meanOverMask(error, pair);
-    if (wantMap) result.map = std::move(error);
+    if (wantMap) {
+        clearUncounted(error, pair);
+        result.map = std::move(error);
+    }
     return result;
 }
 

@@ -69,10 +69,10 @@ FlipExposures flipExposures(const Image& reference) {
 }
 
 Measurement measureHdrFlip(const ImagePair& pair, bool wantMap) {
-    const FlipExposures range = flipExposures(pair.reference);
+    const FlipExposures range = pair.flipExposures.value_or(flipExposures(pair.reference));
     Image worst(pair.image.extent(), 1);
     for (int i = 0; i < range.count; ++i) {
-        const auto exposure = static_cast<float>(range.start + (range.stop - range.start) * i / (range.count - 1));
+        const auto exposure = static_cast<float>(range.start + (range.stop - range.start) * i / std::max(range.count - 1, 1));
         const Image error = flipError(flipFeatures(toneMapped(pair.image, exposure)),
                                       flipFeatures(toneMapped(pair.reference, exposure)));
         for (size_t p = 0; p < worst.size(); ++p) worst.data()[p] = std::max(worst.data()[p], error.data()[p]);
@@ -82,7 +82,10 @@ Measurement measureHdrFlip(const ImagePair& pair, bool wantMap) {
     result.details = {{"start_exposure", range.start},
                       {"stop_exposure", range.stop},
                       {"exposures", static_cast<double>(range.count)}};
-    if (wantMap) result.map = std::move(worst);
+    if (wantMap) {
+        clearUncounted(worst, pair);
+        result.map = std::move(worst);
+    }
     return result;
 }
 

@@ -16,6 +16,15 @@ bool finite(const Image& image, int x, int y) {
     return std::isfinite(image.at(0, x, y)) && std::isfinite(image.at(1, x, y)) && std::isfinite(image.at(2, x, y));
 }
 
+/// A pixel that is not finite in one of the two: see ImagePair::prepare().
+void blank(Image& image, Image& reference, int x, int y) {
+    const bool known = finite(reference, x, y);
+    for (int c = 0; c < 3; ++c) {
+        if (!known) reference.at(c, x, y) = 0;
+        image.at(c, x, y) = reference.at(c, x, y);
+    }
+}
+
 }  // namespace
 
 void ImagePair::prepare(const std::string& where) {
@@ -32,8 +41,7 @@ void ImagePair::prepare(const std::string& where) {
         for (int y = static_cast<int>(begin); y < end; ++y)
             for (int x = 0; x < extent.width; ++x) {
                 const bool good = finite(image, x, y) && finite(reference, x, y);
-                if (!good)
-                    for (int c = 0; c < 3; ++c) image.at(c, x, y) = reference.at(c, x, y) = 0;
+                if (!good) blank(image, reference, x, y);
                 const bool counts = good && (mask.empty() || mask.at(0, x, y) > 0.5f);
                 counted.at(0, x, y) = counts ? 1.0f : 0.0f;
                 brokenHere += !good;
@@ -56,6 +64,13 @@ Image ldrImage(const Image& linear, float exposureEv) {
                 kernels.encodeLdr(linear.plane(c).row(y), factor, out.plane(c).row(y), linear.width());
     });
     return out;
+}
+
+void clearUncounted(Image& map, const ImagePair& pair) {
+    if (pair.valid.empty()) return;
+    for (int y = 0; y < map.height(); ++y)
+        for (int x = 0; x < map.width(); ++x)
+            if (!pair.counts(x, y)) map.at(0, x, y) = 0;
 }
 
 double meanOverMask(const Image& map, const ImagePair& pair) {

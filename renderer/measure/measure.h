@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,14 +8,24 @@
 
 namespace lumi {
 
+/// Exposures of HDR-FLIP, in EV, evenly spaced from start to stop.
+struct FlipExposures {
+    double start = 0, stop = 0;
+    int count = 2;
+};
+
 /// Two images to compare: linear RGB of one extent. Pixels that are not finite in either image, or that a mask leaves
 /// out, do not count in any metric; they are 0 in error maps.
 struct ImagePair {
     Image image{}, reference{};  ///< 3 channels
     Image mask{};            ///< 1 channel, above 0.5 counts; empty: everything counts
     float exposureEv = 0;    ///< for metrics on tone-mapped images: 2^EV, clamp, sRGB
+    /// Of HDR-FLIP; without them it takes flipExposures(reference). All tests of one reference want the same.
+    std::optional<FlipExposures> flipExposures{};
 
-    /// Checks extents, finds and blanks non-finite pixels (both images get 0 there). Call once before measuring.
+    /// Checks extents, finds non-finite pixels and blanks them: where the reference is broken both images get 0, where the
+    /// image alone is it gets the reference's value, so that what is computed from the reference is the same for every
+    /// image. Call once before measuring.
     /// Throws Error(BadInput) if extents differ.
     void prepare(const std::string& where = "");
     bool counts(int x, int y) const { return valid.empty() || valid.at(0, x, y) > 0.5f; }
@@ -49,6 +60,9 @@ const Metric& findMetric(const std::string& id, const std::string& where = "");
 
 /// Tone-mapped image as metrics on LDR see it: exposure, clamp to [0,1], sRGB encoding; 3 channels.
 Image ldrImage(const Image& linear, float exposureEv);
+
+/// Sets a map to 0 in pixels that do not count.
+void clearUncounted(Image& map, const ImagePair& pair);
 
 /// Mean of a map over the pixels that count, summed in double, row by row.
 double meanOverMask(const Image& map, const ImagePair& pair);

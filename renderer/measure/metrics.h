@@ -22,15 +22,13 @@ double ssim(const Image& image, const Image& reference);
 /// and column. Images smaller than 176 pixels on a side use as many scales as fit, weights renormalised.
 double msSsim(const Image& image, const Image& reference);
 
-/// Exposure range of HDR-FLIP from the reference [Andersson 2021, sec. 3.2] with the ACES tone mapper: start and stop in
-/// EV. A reference whose median is 0 uses the median of its pixels above 0; an all-black one gives {0, 0}.
-struct FlipExposures {
-    double start = 0, stop = 0;
-    int count = 2;
-};
+/// Exposure range of HDR-FLIP from the reference [Andersson 2021, sec. 3.2] with the ACES tone mapper. A reference whose
+/// median is 0 uses the median of its pixels above 0; an all-black one gives {0, 0}.
 FlipExposures flipExposures(const Image& reference);
 
-/// CPBD sharpness of one image, in [0,1], higher is sharper [Narvekar & Karam 2011]. `gray` in [0,255].
-double cpbd(ConstFloatPlane gray);
+/// CPBD sharpness of one image, in [0,1], higher is sharper [Narvekar & Karam 2011]. `gray` in [0,255]. Only edges where
+/// `counted` (may be null) is above 0.5 count. `map` (may be null) gets the probability that the blur of each edge that
+/// counts is noticed, 0 elsewhere.
+double cpbd(ConstFloatPlane gray, const Image* counted = nullptr, Image* map = nullptr);
 
 }  // namespace lumi

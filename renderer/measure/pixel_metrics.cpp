@@ -26,9 +26,7 @@ Measurement meanOf(Image map, const ImagePair& pair, bool wantMap) {
     Measurement result;
     result.value = meanOverMask(map, pair);
     if (wantMap) {
-        for (int y = 0; y < map.height(); ++y)
-            for (int x = 0; x < map.width(); ++x)
-                if (!pair.counts(x, y)) map.at(0, x, y) = 0;
+        clearUncounted(map, pair);
         result.map = std::move(map);
     }
     return result;

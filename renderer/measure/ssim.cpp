@@ -11,7 +11,7 @@
 namespace lumi {
 namespace {
 
-constexpr int kWindow = 11;
+constexpr int kWindow = 11, kBorder = kWindow / 2;
 
 /// Horizontally smoothed rows of a, b, a*a, b*b, a*b: a ring of the window's height for each.
 class SmoothedRows {
@@ -108,31 +108,72 @@ double ssim(const Image& image, const Image& reference) {
     return sum / image.channels();
 }
 
-double msSsim(const Image& image, const Image& reference) {
-    constexpr std::array<double, 5> kWeights{0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
+namespace {
+
+constexpr std::array<double, 5> kScaleWeights{0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
+
+size_t scalesThatFit(Extent2 extent) {
     size_t scales = 0;
-    for (int side = std::min(image.width(), image.height()); scales < kWeights.size() && side >= kWindow;
+    for (int side = std::min(extent.width, extent.height); scales < kScaleWeights.size() && side >= kWindow;
          side = (side + 1) / 2)
         ++scales;
-    if (scales == 0) return std::nan("");
-    double weightSum = 0;
-    for (size_t i = 0; i < scales; ++i) weightSum += kWeights[i];
+    return scales;
+}
 
-    double total = 0;
-    for (int c = 0; c < image.channels(); ++c) {
-        Image a = channelOf(image, c), b = channelOf(reference, c);
-        double value = 1;
-        for (size_t i = 0; i < scales; ++i) {
-            const Image maps = ssimMaps(std::as_const(a).plane(0), std::as_const(b).plane(0));
-            const double part = meanOfPlane(maps.plane(i + 1 < scales ? 1 : 0));
-            value *= std::pow(std::max(0.0, part), kWeights[i] / weightSum);
-            if (i + 1 < scales) {
-                a = halved(std::as_const(a).plane(0));
-                b = halved(std::as_const(b).plane(0));
-            }
+/// Mean over the windows whose centre counts; `counted` may be empty. NaN if none does.
+double meanOfWindows(ConstFloatPlane plane, const Image& counted) {
+    if (counted.empty()) return meanOfPlane(plane);
+    double sum = 0;
+    int64_t count = 0;
+    for (int y = 0; y < plane.height; ++y)
+        for (int x = 0; x < plane.width; ++x) {
+            if (!(counted.at(0, x + kBorder, y + kBorder) >= 0.5f)) continue;
+            sum += plane.at(x, y);
+            ++count;
         }
-        total += value;
+    return count > 0 ? sum / static_cast<double>(count) : std::nan("");
+}
+
+/// product *= max(part, 0)^weight, each pixel of full size taking the window around it at this scale.
+void multiplyByScale(ConstFloatPlane part, size_t scale, double weight, Image& product) {
+    parallelRanges(product.height(), 16, [&](int64_t begin, int64_t end) {
+        for (int y = static_cast<int>(begin); y < end; ++y)
+            for (int x = 0; x < product.width(); ++x) {
+                const int px = std::clamp((x >> scale) - kBorder, 0, part.width - 1);
+                const int py = std::clamp((y >> scale) - kBorder, 0, part.height - 1);
+                product.at(0, x, y) *= std::pow(std::max(part.at(px, py), 0.0f), static_cast<float>(weight));
+            }
+    });
+}
+
+/// MS-SSIM of one channel; `counted` says per pixel what counts (may be empty), `map` (may be null) gets the product of
+/// the scales' local values.
+double msSsimOfChannel(Image a, Image b, Image counted, Image* map) {
+    const size_t scales = scalesThatFit(a.extent());
+    double weightSum = 0, value = 1;
+    for (size_t i = 0; i < scales; ++i) weightSum += kScaleWeights[i];
+    if (map) map->fill(1);
+    for (size_t i = 0; i < scales; ++i) {
+        const Image maps = ssimMaps(std::as_const(a).plane(0), std::as_const(b).plane(0));
+        const ConstFloatPlane part = maps.plane(i + 1 < scales ? 1 : 0);
+        const double weight = kScaleWeights[i] / weightSum;
+        const double mean = meanOfWindows(part, counted);
+        value *= std::isnan(mean) ? mean : std::pow(std::max(0.0, mean), weight);
+        if (map) multiplyByScale(part, i, weight, *map);
+        if (i + 1 == scales) break;
+        a = halved(std::as_const(a).plane(0));
+        b = halved(std::as_const(b).plane(0));
+        if (!counted.empty()) counted = halved(std::as_const(counted).plane(0));
     }
+    return value;
+}
+
+}  // namespace
+
+double msSsim(const Image& image, const Image& reference) {
+    if (scalesThatFit(image.extent()) == 0) return std::nan("");
+    double total = 0;
+    for (int c = 0; c < image.channels(); ++c) total += msSsimOfChannel(channelOf(image, c), channelOf(reference, c), {}, nullptr);
     return total / image.channels();
 }
 
@@ -144,7 +185,6 @@ Measurement measureSsim(const ImagePair& pair, bool wantMap) {
         return result;
     }
     // A window counts if its centre pixel does; the map shows 1 - SSIM at the centre, 0 in the border.
-    constexpr int kBorder = kWindow / 2;
     Image map(a.extent(), 1);
     double sum = 0;
     int64_t count = 0;
@@ -166,9 +206,21 @@ Measurement measureSsim(const ImagePair& pair, bool wantMap) {
     return result;
 }
 
-Measurement measureMsSsim(const ImagePair& pair, bool) {
+Measurement measureMsSsim(const ImagePair& pair, bool wantMap) {
+    const Image a = ldrImage(pair.image, pair.exposureEv), b = ldrImage(pair.reference, pair.exposureEv);
     Measurement result;
-    result.value = msSsim(ldrImage(pair.image, pair.exposureEv), ldrImage(pair.reference, pair.exposureEv));
+    if (wantMap) result.map.reset(a.extent(), 1);
+    if (scalesThatFit(a.extent()) == 0) {
+        result.value = std::nan("");
+        return result;
+    }
+    Image product(a.extent(), 1);
+    for (int c = 0; c < 3; ++c) {
+        result.value += msSsimOfChannel(channelOf(a, c), channelOf(b, c), pair.valid, wantMap ? &product : nullptr);
+        for (size_t i = 0; i < result.map.size(); ++i) result.map.data()[i] += (1 - product.data()[i]) / 3;
+    }
+    result.value /= 3;
+    if (wantMap) clearUncounted(result.map, pair);
     return result;
 }
 

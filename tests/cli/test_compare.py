@@ -96,6 +96,55 @@ class Compare(CommandTest):
         better = self.metrics("better.exr", "best.exr", "--metrics", "rmse")["rmse"]
         self.assertGreater(noisy, 2 * better)
 
+    def test_fixed_flip_exposures(self):
+        details = self.good("compare", "pattern.png", "half.png", "--metrics", "hdr_flip", "--flip-exposures", "-3,3,5",
+                            "--json").json["details"]["hdr_flip"]
+        self.assertEqual(details, {"start_exposure": -3, "stop_exposure": 3, "exposures": 5})
+        whole = self.good("compare", "pattern.png", "half.png", "--metrics", "hdr_flip", "--json").json["details"]
+        part = self.good("compare", "pattern.png", "half.png", "--metrics", "hdr_flip", "--crop", "30,0,10,10", "--json").json
+        self.assertEqual(part["details"], whole, "they belong to the reference, not to a part of it")
+
+    def test_frames(self):
+        for frame in range(6):
+            level = 40 if frame < 2 else 200
+            seen = (40, 40, 100, 150, 190, 200)[frame]
+            write_png(self.folder / f"out.{frame:04}.png", WIDTH, HEIGHT, lambda x, y: (seen,) * 3)
+            write_png(self.folder / f"ref.{frame:04}.png", WIDTH, HEIGHT, lambda x, y: (level,) * 3)
+        report = self.good("compare", "out.%04d.png", "ref.%04d.png", "--metrics", "mae,rmse,temporal,lag", "--maps", "maps",
+                           "--json").json
+        frames = report["frames"]
+        self.assertEqual([frame["frame"] for frame in frames], list(range(6)))
+        self.assertAlmostEqual(frames[3]["metrics"]["rmse"], 50 / 255, places=6)
+        self.assertNotIn("temporal", frames[0]["metrics"])
+        self.assertAlmostEqual(frames[2]["metrics"]["temporal"], 60 / 255, places=5)
+        self.assertAlmostEqual(frames[2]["details"]["temporal"]["reference"], 160 / 255, places=5)
+        self.assertAlmostEqual(report["metrics"]["rmse"], sum(f["metrics"]["rmse"] for f in frames) / 6, places=9)
+        self.assertAlmostEqual(report["metrics"]["temporal"], (60 + 50 + 40 + 10) / 5 / 255, places=5)
+        linear = [(v / 255 + 0.055) ** 2.4 / 1.055 ** 2.4 for v in (40, 100, 150, 190, 200)]
+        curve = [(v - linear[0]) / (linear[4] - linear[0]) for v in linear[1:]]
+        self.assertEqual(report["details"]["lag"]["step_frame"], 2)
+        for seen, expected in zip(report["details"]["lag"]["curve"], curve):
+            self.assertAlmostEqual(seen, expected, places=4)
+        self.assertEqual(report["metrics"]["lag"], 3, curve)
+        names = {path.name for path in (self.folder / "maps").iterdir()}
+        self.assertLessEqual({"mae.0005.exr", "rmse.0000.png", "temporal.0001.exr", "lag.png"}, names)
+        some = self.good("compare", "out.%04d.png", "white.png", "--metrics", "mae", "--frames", "1..3", "--json").json
+        self.assertEqual([frame["frame"] for frame in some["frames"]], [1, 2])
+        table = self.good("compare", "out.%04d.png", "ref.%04d.png", "--metrics", "rmse,lag").out
+        self.assertIn("lag: 3 frames after the step at frame 2", table)
+        self.refused(3, ["ref.0006.png"], "compare", "out.%04d.png", "ref.%04d.png", "--frames", "8", "--metrics", "mae")
+        self.refused(3, ["none.%d.png"], "compare", "none.%d.png", "ref.%04d.png")
+        self.refused(2, ["--frames"], "compare", "half.png", "half.png", "--frames", "3")
+
+    def test_movement_is_no_flicker(self):
+        walk = ["--size", "64x48", "--frames", "0..3", "--fps", 30, "--set", "camera.jitter=none"]
+        self.good("render", "parade", *walk, "--module", "none", "--spp", 64, "--out", "n.%d.exr", "--quiet")
+        self.good("render", "parade", *walk, "--module", "none", "--spp", 64, "--buffers", "motion,depth", "--out", "r.%d.exr",
+                  "--quiet", "--seed", 1)
+        values = self.good("compare", "n.%d.exr", "r.%d.exr", "--metrics", "temporal,temporal_reprojected", "--json").json
+        self.assertLess(values["metrics"]["temporal_reprojected"], values["metrics"]["temporal"])
+        self.assertGreater(values["frames"][1]["details"]["temporal_reprojected"]["covered"], 0.5)
+
     def test_what_is_refused(self):
         write_png(self.folder / "small.png", 20, 16, pattern)
         (self.folder / "text.png").write_text("not an image")

@@ -43,6 +43,9 @@ TEST(Published, HdrFlipOfTheDenoiserPair) {
     EXPECT_NEAR(flip.details[1].second, 5.8919, 1e-3);
     EXPECT_EQ(flip.details[2].second, 9);
     EXPECT_NEAR(flip.value, 0.339822, 5e-5);
+    ImagePair fixed = pair;
+    fixed.flipExposures = FlipExposures{-3, 3, 5};
+    EXPECT_NEAR(measureHdrFlip(fixed, false).value, 0.206899, 5e-5);
 }
 
 TEST(Published, PsnrSsimAndFlipOfTheCamera) {
