@@ -3,6 +3,7 @@
 #include <opensubdiv/far/primvarRefiner.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include "scene/subdivision_topology.h"
@@ -35,17 +36,16 @@ bool isFold(const Far::TopologyLevel& level, int vertex) {
     return false;
 }
 
-/// A row of weights that OpenSubdiv's refiner combines.
+/// A row of weights that OpenSubdiv's refiner combines; a vertex may stand in it several times until merged().
 struct WeightRow : RefinedCage::Row {
     void Clear(void* = nullptr) { weights.clear(); }
     void AddWithWeight(const WeightRow& other, float weight) {
-        for (const auto& [vertex, w] : other.weights) {
-            const auto same = std::find_if(weights.begin(), weights.end(), [&](auto& e) { return e.first == vertex; });
-            if (same != weights.end())
-                same->second += weight * w;
-            else
-                weights.emplace_back(vertex, weight * w);
-        }
+        for (const auto& [vertex, w] : other.weights) weights.emplace_back(vertex, weight * w);
+    }
+    RefinedCage::Row merged() const {
+        std::map<uint32_t, float> sums;
+        for (const auto& [vertex, weight] : weights) sums[vertex] += weight;
+        return {{sums.begin(), sums.end()}};
     }
 };
 
@@ -62,9 +62,9 @@ void refineVertices(const Far::TopologyRefiner& refiner, const SubdivisionCage& 
     Far::PrimvarRefiner(refiner).Interpolate(1, identity, rows);
     for (const WeightRow& row : rows) {
         Vec3 position(0);
-        for (const auto& [vertex, weight] : row.weights) position += weight * coarse.positions[vertex];
+        out.vertices.push_back(row.merged());
+        for (const auto& [vertex, weight] : out.vertices.back().weights) position += weight * coarse.positions[vertex];
         out.cage.positions.push_back(position);
-        out.vertices.push_back(row);
     }
 }
 

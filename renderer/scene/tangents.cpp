@@ -2,12 +2,13 @@
 // section 3.3 and appendix A. Corners of equal position, normal and texture coordinates are one vertex; the corners
 // around a vertex that share edges and the orientation of their coordinates form a group; a group's tangent is the sum
 // of its triangles' tangents in the plane of the vertex normal, weighted by angle. Differs from the thesis: triangles
-// only (no quads); one tangent for a group of more than 4096 corners.
+// only (no quads); one tangent for a group of more than 128 corners.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "scene/mesh.h"
 #include "scene/mesh_edit.h"
@@ -16,8 +17,9 @@ namespace lumi {
 namespace {
 
 constexpr uint32_t kNone = ~0u;
-constexpr size_t kLargestExactGroup = 4096;
+constexpr size_t kLargestExactGroup = 128;
 constexpr Vec4 kNoDirection(0, 0, 0, 1);
+constexpr int kMostCopiesTried = 16;  ///< of a vertex that thousands of faces share, before it gets another copy
 
 struct Face {
     std::array<uint32_t, 3> vertex{};                        ///< welded vertex of each corner
@@ -259,14 +261,14 @@ void assignToVertices(Mesh& mesh, const std::vector<Vec4>& cornerTangents) {
             const Vec4& tangent = cornerTangents[3 * t + static_cast<size_t>(c)];
             uint32_t v = mesh.triangles[t][c];
             if (!isSet[v] && tangent != kNoDirection) tangents[v] = tangent, isSet[v] = true;
-            while (!agree(tangents[v], tangent)) {
-                if (nextCopy[v] == kNone) {
-                    nextCopy[v] = static_cast<uint32_t>(source.size());
-                    source.push_back(mesh.triangles[t][c]);
-                    tangents.push_back(tangent);
-                    nextCopy.push_back(kNone);
-                }
-                v = nextCopy[v];
+            const uint32_t original = v;
+            for (int tried = 0; v != kNone && !agree(tangents[v], tangent); ++tried)
+                v = tried < kMostCopiesTried ? nextCopy[v] : kNone;
+            if (v == kNone) {
+                v = static_cast<uint32_t>(source.size());
+                source.push_back(original);
+                tangents.push_back(tangent);
+                nextCopy.push_back(std::exchange(nextCopy[original], v));
             }
             mesh.triangles[t][c] = v;
         }
