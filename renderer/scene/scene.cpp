@@ -5,6 +5,7 @@
 
 #include "scene/bounds.h"
 #include "scene/deform.h"
+#include "scene/material_textures.h"
 #include "scene/node_pose.h"
 
 namespace lumi {
@@ -97,12 +98,7 @@ size_t Scene::byteCount() const {
     std::set<const TextureImage*> images;
     for (const Instance& instance : instances) meshes.insert(instance.mesh.get());
     for (const Material& m : materials)
-        for (const Texture* texture :
-             {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture, &m.occlusionTexture, &m.emissionTexture,
-              &m.specularTexture, &m.specularColorTexture, &m.transmissionTexture, &m.clearcoatTexture,
-              &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture, &m.sheenColorTexture, &m.sheenRoughnessTexture,
-              &m.anisotropyTexture, &m.iridescenceTexture, &m.iridescenceThicknessTexture})
-            addTexture(*texture, images);
+        for (const auto texture : kMaterialTextures) addTexture(m.*texture, images);
     size_t bytes = environment.image ? environment.image->bytes() : 0;
     for (const Mesh* mesh : meshes) bytes += mesh->byteCount();
     for (const TextureImage* image : images) bytes += image->byteCount();

@@ -66,13 +66,14 @@ Scene loadGltf(const std::filesystem::path& path, MessageLog& log, const LoadOpt
 
     document.progress(0.1f, "Decoding textures, reading meshes");
     gltf::TextureLibrary library(document);
-    scene.materials = gltf::loadMaterials(document, library);
+    gltf::MaterialSet materials = gltf::loadMaterials(document, library);
     std::vector<std::shared_ptr<const Mesh>> meshes;
     parallelInvoke(
         [&] {
             library.load([&](float done) { document.progress(0.1f + 0.8f * done, "Decoding textures, reading meshes"); });
         },
-        [&] { meshes = gltf::loadMeshes(document, tree.usedMeshes(), scene.materials); });
+        [&] { meshes = gltf::loadMeshes(document, tree.usedMeshes(), materials); });
+    scene.materials = std::move(materials.materials);
 
     document.progress(0.9f, "Placing objects");
     tree.populate(meshes);

@@ -1,8 +1,11 @@
 #include "scene/gltf/materials.h"
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 
 #include "scene/gltf/values.h"
+#include "scene/material_textures.h"
 
 namespace lumi::gltf {
 namespace {
@@ -177,20 +180,38 @@ private:
     Material material_;
 };
 
+/// The two of the file's texture coordinate sets that a material's meshes carry; its textures then count among those.
+UvSets chooseUvSets(const Document& document, Material& material) {
+    std::set<int> used;
+    for (const auto texture : kMaterialTextures)
+        if (material.*texture) used.insert((material.*texture).uvSet);
+    UvSets chosen{0, 1};
+    if (used.empty() || *used.rbegin() <= 1) return chosen;
+    chosen[0] = *used.begin();
+    chosen[1] = used.size() > 1 ? *std::next(used.begin()) : chosen[0];
+    if (used.size() > 2)
+        document.warn("the material \"" + material.name + "\" uses more than two sets of texture coordinates; " +
+                      "TEXCOORD_" + std::to_string(chosen[0]) + " stands in for the others");
+    for (const auto texture : kMaterialTextures)
+        if (int& set = (material.*texture).uvSet; material.*texture) set = set == chosen[1] && chosen[1] != chosen[0];
+    return chosen;
+}
+
 }  // namespace
 
-std::vector<Material> loadMaterials(const Document& document, TextureLibrary& library) {
+MaterialSet loadMaterials(const Document& document, TextureLibrary& library) {
     const std::vector<tinygltf::Material>& sources = document.model().materials;
-    std::vector<Material> materials;
-    materials.reserve(sources.size() + 1);
+    MaterialSet set;
+    set.materials.reserve(sources.size() + 1);
     for (size_t i = 0; i < sources.size(); ++i)
-        materials.push_back(MaterialReader(document, library, sources[i], i).read());
+        set.materials.push_back(MaterialReader(document, library, sources[i], i).read());
     Material fallback;
     fallback.name = "default";
     fallback.metallic = 1;
     fallback.roughness = 1;
-    materials.push_back(fallback);
-    return materials;
+    set.materials.push_back(fallback);
+    for (Material& material : set.materials) set.uvSets.push_back(chooseUvSets(document, material));
+    return set;
 }
 
 }  // namespace lumi::gltf

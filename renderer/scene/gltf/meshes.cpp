@@ -50,8 +50,8 @@ int materialIndex(const tinygltf::Primitive& primitive, int variant) {
 
 class MeshReader {
 public:
-    MeshReader(const Document& document, const std::vector<Material>& materials, int variant, size_t index)
-        : document_(document), materials_(materials), variant_(variant),
+    MeshReader(const Document& document, const MaterialSet& set, int variant, size_t index)
+        : document_(document), materials_(set.materials), uvSets_(set.uvSets), variant_(variant),
           source_(document.model().meshes[index]), path_("/meshes/" + std::to_string(index)) {
         if (source_.name.empty()) source_.name = "mesh " + std::to_string(index);
     }
@@ -75,23 +75,27 @@ private:
         document_.pollStop();
         const tinygltf::Primitive& primitive = source_.primitives[p];
         const std::string path = path_ + "/primitives/" + std::to_string(p);
-        const std::unique_ptr<const DracoMesh> draco = decodeDraco(document_, primitive, path);
-        size_t part = draco ? sources_.size() : 0;
-        while (part < sources_.size() && (!sources_[part] || sources_[part]->attributes != primitive.attributes ||
-                                          sources_[part]->targets != primitive.targets))
-            ++part;
-        if (part == sources_.size()) {
-            sources_.push_back(draco ? nullptr : &primitive);
-            parts_.push_back(readVertices(document_, primitive, draco.get(), path));
-        }
-        if (parts_[part].positions.empty()) return;
-        const std::vector<UVec3> triangles =
-            readTriangles(document_, primitive, draco.get(), parts_[part].positions.size(), path);
         int material = materialIndex(primitive, variant_);
         if (material < 0)
             material = static_cast<int>(materials_.size()) - 1;
         else
             document_.checkIndex(material, materials_.size() - 1, path + "/material", "materials");
+        const UvSets& uvSets = uvSets_[static_cast<size_t>(material)];
+
+        const std::unique_ptr<const DracoMesh> draco = decodeDraco(document_, primitive, path);
+        const auto sharesVertices = [&](const Source& other) {
+            return other.primitive && other.primitive->attributes == primitive.attributes &&
+                   other.primitive->targets == primitive.targets && other.uvSets == uvSets;
+        };
+        const auto known = std::find_if(sources_.begin(), sources_.end(), sharesVertices);
+        const auto part = draco ? sources_.size() : static_cast<size_t>(known - sources_.begin());
+        if (part == sources_.size()) {
+            sources_.push_back({draco ? nullptr : &primitive, uvSets});
+            parts_.push_back(readVertices(document_, primitive, draco.get(), uvSets, path));
+        }
+        if (parts_[part].positions.empty()) return;
+        const std::vector<UVec3> triangles =
+            readTriangles(document_, primitive, draco.get(), parts_[part].positions.size(), path);
         Mesh& mesh = parts_[part];
         mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
         mesh.triangleMaterial.resize(mesh.triangles.size(), static_cast<uint32_t>(material));
@@ -112,19 +116,26 @@ private:
             computeTangents(part, mapped->normalTexture.uvSet);
     }
 
+    /// Whose vertices a part holds; without a primitive they are for its own triangles alone.
+    struct Source {
+        const tinygltf::Primitive* primitive;
+        UvSets uvSets;
+    };
+
     const Document& document_;
     const std::vector<Material>& materials_;
+    const std::vector<UvSets>& uvSets_;
     int variant_;
     tinygltf::Mesh source_;
     std::string path_;
-    std::vector<const tinygltf::Primitive*> sources_;  ///< whose vertices a part holds; null: its own alone
+    std::vector<Source> sources_;
     std::vector<Mesh> parts_;
 };
 
 }  // namespace
 
 std::vector<std::shared_ptr<const Mesh>> loadMeshes(const Document& document, const std::vector<bool>& used,
-                                                    const std::vector<Material>& materials) {
+                                                    const MaterialSet& materials) {
     const int variant = variantIndex(document);
     std::vector<std::shared_ptr<const Mesh>> meshes(document.model().meshes.size());
     parallelFor(static_cast<int64_t>(meshes.size()), [&](int64_t i) {

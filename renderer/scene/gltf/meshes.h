@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "scene/gltf/document.h"
-#include "scene/material.h"
+#include "scene/gltf/materials.h"
 #include "scene/mesh.h"
 
 namespace lumi::gltf {
@@ -11,6 +11,6 @@ namespace lumi::gltf {
 /// primitives merged, a material for each triangle. Meshes without any triangle stay null too. `materials` are those
 /// of loadMaterials(): the last is glTF's default. Tangents are computed where a normal map needs them.
 std::vector<std::shared_ptr<const Mesh>> loadMeshes(const Document& document, const std::vector<bool>& used,
-                                                    const std::vector<Material>& materials);
+                                                    const MaterialSet& materials);
 
 }  // namespace lumi::gltf

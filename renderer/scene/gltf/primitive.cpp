@@ -123,7 +123,7 @@ void makeHarmless(Mesh& mesh) {
 }  // namespace
 
 Mesh readVertices(const Document& document, const tinygltf::Primitive& primitive, const DracoMesh* draco,
-                  const std::string& path) {
+                  const UvSets& uvSets, const std::string& path) {
     const std::map<std::string, int>& attributes = primitive.attributes;
     const std::string where = path + "/attributes";
     if (find(attributes, "POSITION") < 0) {
@@ -137,8 +137,9 @@ Mesh readVertices(const Document& document, const tinygltf::Primitive& primitive
     mesh.positions = reader.read<Vec3>(attributes, "POSITION");
     mesh.normals = reader.read<Vec3>(attributes, "NORMAL");
     mesh.tangents = reader.read<Vec4>(attributes, "TANGENT");
-    mesh.uv[0] = reader.read<Vec2>(attributes, "TEXCOORD_0");
-    mesh.uv[1] = reader.read<Vec2>(attributes, "TEXCOORD_1");
+    for (size_t set = 0; set < uvSets.size(); ++set)
+        if (set == 0 || uvSets[1] != uvSets[0])
+            mesh.uv[set] = reader.read<Vec2>(attributes, "TEXCOORD_" + std::to_string(uvSets[set]));
     mesh.colours = reader.readColours(attributes);
     mesh.skin = reader.readSkin(attributes);
     for (const std::map<std::string, int>& target : primitive.targets)

@@ -80,10 +80,7 @@ Texture TextureLibrary::texture(int index, int texCoord, const tinygltf::Extensi
         texture.rotation = numberOf(transform, "rotation", 0);
         texture.uvSet = static_cast<int>(numberOf(transform, "texCoord", static_cast<float>(texCoord)));
     }
-    if (texture.uvSet < 0 || texture.uvSet > 1) {
-        document_.warn("TEXCOORD_" + std::to_string(texture.uvSet) + " is not supported; TEXCOORD_0 is used instead");
-        texture.uvSet = 0;
-    }
+    texture.uvSet = std::clamp(texture.uvSet, 0, 1 << 20);
     if (source.source < 0) {
         countUnsupported(formatOf(source.extensions));
         texture.image = placeholder(use);

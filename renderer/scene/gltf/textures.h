@@ -17,7 +17,8 @@ class TextureLibrary {
 public:
     explicit TextureLibrary(const Document& document) : document_(document) {}
 
-    /// The texture behind a glTF textureInfo; an `index` below 0 gives none. Its image is empty until load().
+    /// The texture behind a glTF textureInfo; an `index` below 0 gives none. Its image is empty until load(); its uvSet
+    /// is the file's number.
     Texture texture(int index, int texCoord, const tinygltf::ExtensionMap& extensions, TextureUse use,
                     const std::string& jsonPath);
 
