@@ -29,6 +29,11 @@ void addShared(CLI::App& app, SharedText& text, SceneOptions& scene) {
         ->type_name("EV")->take_last();
 }
 
+void addCameraPath(CLI::App& app, SceneOptions& scene) {
+    app.add_option("--camera-path", scene.cameraPath, "Keys for the camera: our own JSON or instant-ngp's")
+        ->type_name("FILE")->take_last();
+}
+
 void addMachine(CLI::App& app, MachineOptions& machine, bool computes) {
     app.add_flag("--json", machine.json, "Print the result as one JSON value on standard output");
     app.add_flag("--quiet", machine.quiet, "Print nothing but errors");
@@ -118,6 +123,7 @@ private:
         addShared(*app, renderText_, render.scene);
         app->add_option("--frames", frames_, "Frames 0..N-1, or A..B without B; history is empty at A (1)")
             ->type_name("N|A..B");
+        addCameraPath(*app, render.scene);
         app->add_option("--warm-up", warmUp_, "Frames to run before the first without writing them (0)")->type_name("N");
         app->add_option("--out", render.out,
                         "File to write: .exr, .png or .mp4, %04d is the frame number; repeatable "
@@ -150,6 +156,7 @@ private:
             ->type_name("A..B")
             ->excludes("--error")
             ->take_last();
+        addCameraPath(*app, reference.scene);
         app->add_option("--frames", referenceFrames_, "A reference for each of frames 0..N-1, or A..B without B (1)")
             ->type_name("N|A..B")
             ->take_last();
@@ -231,6 +238,11 @@ private:
             ->type_name("ID=VALUE")
             ->expected(1)
             ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        app->add_option("--write-camera-path", line_.writeCameraPath,
+                        "Write the camera's keys as JSON; a name in .ngp.json is for instant-ngp")
+            ->type_name("FILE")->take_last();
+        app->add_option("--camera", infoText_.camera, "Camera whose keys are written (the first)")
+            ->type_name("NAME|INDEX")->take_last();
         app->add_flag("--check", line_.check,
                       "Trace two small frames and verify every rule that filters rely on; exit 1 if one is broken");
         addMachine(*app, line_.machine, true);
@@ -289,7 +301,7 @@ private:
         if (render.scene.scene.empty() && render.replay.empty())
             throwUsage({"render needs a scene", "", "lumiscope render SCENE, or --replay FILE", ""});
         if (!render.replay.empty() && (!render.scene.values.empty() || !frames_.empty() || !warmUp_.empty() ||
-                                       !render.buffers.empty() || render.half))
+                                       !render.scene.cameraPath.empty() || !render.buffers.empty() || render.half))
             throwUsage({"everything about the image comes from the file", "--replay",
                         "only SCENE (where it is now), --out and options of the machine beside it", ""});
     }

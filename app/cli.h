@@ -25,6 +25,7 @@ struct SceneOptions {
     std::vector<std::string> modules;  ///< instances
     /// Parameter id and text: the options that are parameters, then those of --set.
     std::vector<TypedValue> values;
+    std::filesystem::path cameraPath;  ///< that the camera follows, for render, reference and info; may be empty
 };
 
 /// Half-open.
@@ -77,6 +78,7 @@ struct CommandLine {
     CompareOptions compare; ///< Compare
     SceneOptions scene;     ///< Window, Info, View
     bool check = false;     ///< Info
+    std::filesystem::path writeCameraPath;  ///< Info; may be empty
     std::string filter;     ///< Bench: regular expression over names
     ListOptions list;       ///< List
     ViewOptions view;       ///< View: script, out, samples, size; View and Window fill `start` from `scene`

@@ -43,6 +43,21 @@ void printMessages(MessageLog& log, const MachineOptions& machine) {
     log.setListener(print);
 }
 
+std::optional<CameraPath> readCameraPathOf(const SceneOptions& options) {
+    if (options.cameraPath.empty()) return std::nullopt;
+    return readCameraPath(options.cameraPath);
+}
+
+void followCameraPath(Document& document, const std::optional<CameraPath>& path) {
+    if (!path) return;
+    const SceneCamera::Key key = path->at(document.time());
+    document.set("camera.eye", key.eye);
+    document.set("camera.look-at", key.target);
+    document.set("camera.fov-y-deg", key.fovYDeg);
+    document.set("camera.focus", key.focus);
+    if (path->aperture > 0) document.set("camera.aperture", path->aperture);
+}
+
 Document makeDocument(std::shared_ptr<const Scene> scene, const SceneOptions& options) {
     Document document(std::move(scene));
     for (const auto& [id, text, option] : options.values) document.setText(id, text, option);

@@ -1,9 +1,11 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <stop_token>
 
 #include "app/cli.h"
 #include "base/messages.h"
+#include "scene/camera_path.h"
 #include "scene/load.h"
 #include "session/document.h"
 
@@ -12,8 +14,9 @@ namespace lumi {
 // Each command returns the program's exit code and throws Error; results go to standard output, all else to standard
 // error.
 int runRender(const RenderOptions& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop);
-/// With `check` the signals' contract is verified too; 1 if a rule is broken.
-int runInfo(const SceneOptions& options, bool check, const MachineOptions& machine, MessageLog& log,
+/// With `check` the signals' contract is verified too; 1 if a rule is broken. The camera's keys go to `writeCameraPath`,
+/// if that is not empty.
+int runInfo(const SceneOptions& options, bool check, const std::filesystem::path& writeCameraPath, const MachineOptions& machine, MessageLog& log,
             std::stop_token stop);
 int runList(const ListOptions& options, const MachineOptions& machine);
 
@@ -30,6 +33,10 @@ int parseSceneIndex(const TypedValue& value);
 /// The scene that the options name, with the scene.index and scene.variant among their values.
 std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const SceneOptions& options, MessageLog& log,
                                        std::stop_token stop);
+
+/// Puts the camera where it is at the document's time; nothing without a path.
+void followCameraPath(Document& document, const std::optional<CameraPath>& path);
+std::optional<CameraPath> readCameraPathOf(const SceneOptions& options);
 
 /// A document of the scene with all values of the options.
 Document makeDocument(std::shared_ptr<const Scene> scene, const SceneOptions& options);

@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "app/signals_check.h"
+#include "base/files.h"
 #include "base/memory.h"
 
 namespace lumi {
@@ -126,12 +127,16 @@ void printChecks(const std::vector<FrameCheck>& checks) {
 
 }  // namespace
 
-int runInfo(const SceneOptions& options, bool check, const MachineOptions& machine, MessageLog& log,
+int runInfo(const SceneOptions& options, bool check, const std::filesystem::path& writeCameraPath, const MachineOptions& machine, MessageLog& log,
             std::stop_token stop) {
     const std::filesystem::path file = findScene(options.scene);
     const auto scene = openScene(file, options, log, stop);
     const Document document = makeDocument(scene, options);
     const std::vector<FrameCheck> checks = check ? checkFrames(document, stop) : std::vector<FrameCheck>();
+    if (!writeCameraPath.empty())
+        writeFileAtomically(writeCameraPath,
+                            formatCameraPath(cameraPathOf(*scene, document.cameraIndex(), document.render().fps),
+                                             cameraPathFormatOf(writeCameraPath)));
     json info = infoJson(*scene, file, log);
     if (check) info["checks"] = checksJson(checks);
     if (machine.json) std::puts(info.dump(2).c_str());

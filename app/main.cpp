@@ -62,7 +62,7 @@ int runCommand(const CommandLine& line) {
         case Command::Merge: return runMerge(line.merge, line.machine);
         case Command::Info: {
             InterruptGuard interrupt;
-            return runInfo(line.scene, line.check, line.machine, log, interrupt.token());
+            return runInfo(line.scene, line.check, line.writeCameraPath, line.machine, log, interrupt.token());
         }
     }
     return 0;

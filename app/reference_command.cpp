@@ -69,7 +69,7 @@ class ReferenceJob {
 public:
     ReferenceJob(const ReferenceCommand& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop)
         : options_(options), file_(findScene(options.scene.scene)), scene_(openScene(file_, options.scene, log, stop)),
-          document_(makeDocument(scene_, options.scene)) {
+          document_(makeDocument(scene_, options.scene)), path_(readCameraPathOf(options.scene)) {
         printMessages(log, machine);
         document_.set("view.0.module", std::string("accumulate"));
         const auto sppGiven = std::any_of(options.scene.values.begin(), options.scene.values.end(),
@@ -83,12 +83,20 @@ public:
     void forEachFrame(Body body) {
         for (int64_t number = options_.frames.begin; number < options_.frames.end; ++number) {
             if (timed()) document_.setTime(timeOf(number));
+            followCameraPath(document_, path_);
             if (!body(number, document_)) return;
         }
     }
     bool timed() const { return options_.frames.end > 1; }
     float timeOf(int64_t number) const {
         return static_cast<float>(static_cast<double>(number) / static_cast<double>(document_.render().fps));
+    }
+    /// The document a frame earlier, or as it is for the first.
+    Document before(int64_t number) const {
+        Document earlier = document_;
+        if (number > 0 && timed()) earlier.setTime(timeOf(number - 1));
+        followCameraPath(earlier, path_);
+        return earlier;
     }
     const ReferenceGoal& goal() const { return goal_; }
     const fs::path& file() const { return file_; }
@@ -100,6 +108,7 @@ private:
     const fs::path file_;
     std::shared_ptr<const Scene> scene_;
     Document document_;
+    std::optional<CameraPath> path_;
     ReferenceGoal goal_;
 };
 
@@ -201,11 +210,7 @@ private:
             reference = makeReference(spec, job_.goal(), referenceOptions(status));
         }
         std::shared_ptr<const Signals> signals;
-        if (!layers_.empty()) {
-            Document before = document;
-            if (number > 0 && job_.timed()) before.setTime(job_.timeOf(number - 1));
-            signals = traceLayers(spec, before, layers_, reference.samples, stop_);
-        }
+        if (!layers_.empty()) signals = traceLayers(spec, job_.before(number), layers_, reference.samples, stop_);
         const ReferencePicture picture =
             ReferencePicture::of(document, job_.sceneReference(), options_.buffers, options_.half);
         for (const std::string& name : names_) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/render_resume.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "base/isa.h"
@@ -66,7 +67,7 @@ public:
         if (machine.json) {
             json stages = json::object();
             for (const std::string& stage : order_) stages[stage] = median(stages_.at(stage));
-            const json result = {{"frames", frames_},        {"stages_ms", stages},
+            const json result = {{"frames", frames_},        {"frames_kept", kept_}, {"stages_ms", stages},
                                  {"rays", rays_},            {"mrays_per_s", mraysPerSecond},
                                  {"files", outputs.files()}, {"peak_memory_bytes", peakResidentBytes()},
                                  {"warnings", log.warnings()}};
@@ -83,8 +84,10 @@ public:
                    stderr);
     }
 
+    void keep(int64_t frames) { kept_ = frames; }
+
 private:
-    int64_t frames_ = 0;
+    int64_t frames_ = 0, kept_ = 0;
     uint64_t rays_ = 0, nonFinite_ = 0;
     double traceMs_ = 0;
     std::map<std::string, std::vector<double>> stages_;
@@ -110,12 +113,25 @@ public:
         const double fps = document.render().fps;
         const int64_t first = range.begin - options_.warmUp;
         const bool timed = range.end - first > 1 || first > 0;
-        last_ = range.end - 1, first_ = first;
-        for (int64_t number = first; number < range.end; ++number) {
-            if (timed) document.setTime(static_cast<float>(static_cast<double>(number) / fps));
-            draw(document, number, number == first, number >= range.begin);
+        const std::optional<CameraPath> path = readCameraPathOf(options_.scene);
+        const std::function<Document(int64_t)> documentAt = [&](int64_t number) {
+            Document then = document;
+            if (timed) then.setTime(static_cast<float>(static_cast<double>(number) / fps));
+            followCameraPath(then, path);
+            return then;
+        };
+        const ResumePlan plan = planResume(*outputs_, {options_.scene.scene, scene->contentDigest}, choice_, documentAt, first,
+                                           range.begin, range.end);
+        if (plan.kept > 0) log_.info(fmt::format("{} frames are there already", plan.kept));
+        summary_.keep(plan.kept);
+        last_ = range.end - 1, first_ = plan.from;
+        for (int64_t number = plan.from; number < range.end; ++number) {
+            // What is there is trusted when the last of it comes out again as it is.
+            const bool check = plan.kept > 0 && number == range.begin + plan.kept - 1 && number < plan.write;
+            draw(documentAt(number), number, number == plan.from,
+                 number >= plan.write ? Fate::Written : check ? Fate::Checked : Fate::Dropped);
         }
-        return finish();
+        return finish(range.begin, range.end);
     }
 
     int replay() {
@@ -138,12 +154,14 @@ public:
         first_ = replay.first, last_ = replay.last;
         for (FrameNumber number = replay.first; number <= replay.last; ++number) {
             if (const json* values = replay.valuesOf(number)) applyState(document, *values);
-            draw(document, number, number == replay.first, number == replay.last);
+            draw(document, number, number == replay.first, number == replay.last ? Fate::Written : Fate::Dropped);
         }
-        return finish();
+        return finish(replay.last, replay.last + 1);
     }
 
 private:
+    enum class Fate { Dropped, Checked, Written };
+
     /// `instance` is the one whose image the last frame shows, for the default name.
     void start(const Document& document, const fs::path& file, const std::string& instance, SceneReference reference) {
         printMessages(log_, machine_);
@@ -158,10 +176,10 @@ private:
         total_.restart();
     }
 
-    void draw(const Document& document, FrameNumber number, bool cut, bool written) {
+    void draw(const Document& document, FrameNumber number, bool cut, Fate fate) {
         const bool last = number == last_;
         FrameRequest request{document, number, cut, {}, {}};
-        if (written && outputs_->wantsLayers(last)) {
+        if (fate != Fate::Dropped && outputs_->wantsLayers(last)) {
             // A replay may have changed the module since its first frame.
             const std::string& instance = document.view(choice_.view).module;
             const BufferSelection buffers = buffersOf(instance);
@@ -173,7 +191,8 @@ private:
         if (!frame) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
         states_.record(*frame, std::make_shared<Document>(document));
         summary_.add(*frame);
-        if (written) outputs_->write(*frame, document, states_, last);
+        if (fate == Fate::Written) outputs_->write(*frame, document, states_, last);
+        else if (fate == Fate::Checked) outputs_->verify(*frame, document, states_);
     }
 
     std::optional<FrameOutput> drawWithProgress(const FrameRequest& request) {
@@ -193,8 +212,8 @@ private:
         return engine_->advance(request, stop_);
     }
 
-    int finish() {
-        outputs_->finish();
+    int finish(int64_t begin, int64_t end) {
+        outputs_->finish(begin, end);
         summary_.print(*outputs_, machine_, log_, total_.elapsedMs() / 1000);
         return 0;
     }

@@ -11,8 +11,10 @@
 
 namespace lumi {
 
-/// The files of one `render`: those with a frame number are written each frame, videos grow, the others get the last
-/// frame. Nothing is left half written.
+/// The files of one `render`: those with a frame number are written each frame, the others get the last frame. A frame
+/// that is there already with the same state is left alone; one with another state is never overwritten. The frames of a
+/// video are kept as PNGs in `<video>.frames` until it is complete, so that it goes on after an interruption. Nothing is
+/// left half written.
 class RenderOutputs {
 public:
     /// Checks every name before the first ray. Without an ffmpeg program a video becomes numbered PNGs, and a warning.
@@ -22,23 +24,28 @@ public:
     /// Does the frame go into an EXR, so that its layers have to be there?
     bool wantsLayers(bool last) const;
     void write(const FrameOutput& frame, const Document& document, const StateLog& log, bool last);
-    void finish();
-    const std::vector<std::string>& files() const { return files_; }
+    /// Is the frame what its files hold, to the byte? Throws Error(Usage) naming one that holds something else.
+    void verify(const FrameOutput& frame, const Document& document, const StateLog& log) const;
+    /// Makes the videos of frames [begin, end).
+    void finish(int64_t begin, int64_t end);
+
+    const std::vector<std::string>& files() const { return files_; }  ///< written, videos but not their frames
+    std::vector<std::string> numberedFiles(int64_t frame) const;
+    static bool allThere(const std::vector<std::string>& names);
+    bool hasLastFrameFiles() const;  ///< files without a number
+    [[noreturn]] static void throwOtherState(const std::string& name);
 
 private:
     struct Output {
         std::string name;
         std::string extension;
         bool numbered = false;
+        std::filesystem::path video;  ///< that these frames are of; empty: of none
     };
-    struct Video {
-        std::filesystem::path path;
-        std::unique_ptr<VideoPipe> pipe;
-    };
-    void writeVideo(const Output& output, const FrameOutput& frame, const Document& document);
+    Output videoFrames(const std::string& name) const;
+    void finishVideo(const Output& output, int64_t begin, int64_t end);
 
     std::vector<Output> outputs_;
-    std::vector<Video> videos_;
     OutputChoice choice_;
     double fps_;
     std::vector<std::string> files_;

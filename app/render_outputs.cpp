@@ -5,6 +5,7 @@
 #include "app/render_command.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "image/png.h"
 #include "session/view_buffers.h"
 
 namespace lumi {
@@ -40,21 +41,27 @@ RenderOutputs::RenderOutputs(const std::vector<std::string>& names, const Output
                              MessageLog& log)
     : choice_(choice), fps_(fps) {
     for (const std::string& name : names) {
-        Output output{name, lowerExtension(name), false};
+        Output output{name, lowerExtension(name), false, {}};
         numberedName(name, 0, &output.numbered);
         if (output.extension != ".exr" && output.extension != ".png" && output.extension != ".mp4")
             throwUsage({"cannot write this kind of file", name, ".exr, .png or .mp4", '"' + output.extension + '"'});
         if (output.extension == ".mp4" && output.numbered)
             throwUsage({"a video holds all frames", name, "a name without %d", ""});
         if (fs::is_directory(name)) throwUsage({"is a folder", name, "a file name", ""});
-        if (output.extension == ".mp4" && !VideoPipe::available()) {
-            output = {fs::path(name).replace_extension(".%04d.png").string(), ".png", true};
+        if (output.extension == ".mp4" && VideoPipe::available()) {
+            output = videoFrames(name);
+        } else if (output.extension == ".mp4") {
+            output = {fs::path(name).replace_extension(".%04d.png").string(), ".png", true, {}};
             log.warning(fmt::format("{}: no ffmpeg program to write video with; writing {}", name, output.name));
         }
-        if (output.extension == ".mp4" && fs::exists(numberedName(name, 0)))
-            throwUsage({"exists already", name, "a new file", ""});
         outputs_.push_back(output);
     }
+}
+
+RenderOutputs::Output RenderOutputs::videoFrames(const std::string& name) const {
+    const fs::path video = numberedName(name, 0);
+    if (fs::exists(video)) throwUsage({"exists already", video.string(), "a new file", ""});
+    return {name + ".frames/%06d.png", ".png", true, video};  // % in the name stays doubled
 }
 
 bool RenderOutputs::wantsLayers(bool last) const {
@@ -62,38 +69,69 @@ bool RenderOutputs::wantsLayers(bool last) const {
                        [&](const Output& o) { return o.extension == ".exr" && (o.numbered || last); });
 }
 
+std::vector<std::string> RenderOutputs::numberedFiles(int64_t frame) const {
+    std::vector<std::string> names;
+    for (const Output& output : outputs_)
+        if (output.numbered) names.push_back(numberedName(output.name, frame));
+    return names;
+}
+
+bool RenderOutputs::allThere(const std::vector<std::string>& names) {
+    return std::all_of(names.begin(), names.end(), [](const std::string& name) { return fs::exists(name); });
+}
+
+bool RenderOutputs::hasLastFrameFiles() const {
+    return std::any_of(outputs_.begin(), outputs_.end(), [](const Output& output) { return !output.numbered; });
+}
+
+void RenderOutputs::throwOtherState(const std::string& name) {
+    throwUsage({"exists already and is another image", name, "this frame, or no file", ""});
+}
+
 void RenderOutputs::write(const FrameOutput& frame, const Document& document, const StateLog& log, bool last) {
     std::string state;
     for (const Output& output : outputs_) {
-        if (output.extension == ".mp4") {
-            writeVideo(output, frame, document);
-        } else if (output.numbered || last) {
-            if (state.empty()) state = log.json(choice_.json());
-            const std::string name = numberedName(output.name, frame.number);
-            exportView(name, frame, document, choice_, state);
-            files_.push_back(name);
+        if (!output.numbered && !last) continue;
+        if (state.empty()) state = log.json(choice_.json());
+        const std::string name = numberedName(output.name, frame.number);
+        if (output.numbered && fs::exists(name)) {
+            if (stateTextOf(name) != state) throwOtherState(name);
+            continue;
         }
+        exportView(name, frame, document, choice_, state);
+        if (output.video.empty()) files_.push_back(name);
     }
 }
 
-void RenderOutputs::writeVideo(const Output& output, const FrameOutput& frame, const Document& document) {
-    const fs::path path = numberedName(output.name, 0);
-    auto video = std::find_if(videos_.begin(), videos_.end(), [&](const Video& v) { return v.path == path; });
-    DisplayInfo info;
-    const auto pixels = drawView(frame, document.view(choice_.view), info);
-    if (video == videos_.end()) {
-        videos_.push_back({path, std::make_unique<VideoPipe>(path, pixels->extent, fps_)});
-        video = videos_.end() - 1;
+void RenderOutputs::verify(const FrameOutput& frame, const Document& document, const StateLog& log) const {
+    const std::string state = log.json(choice_.json());
+    for (const std::string& name : numberedFiles(frame.number)) {
+        const fs::path again = unusedPath(fs::path(name).replace_extension(".check" + fs::path(name).extension().string()));
+        exportView(again, frame, document, choice_, state);
+        const bool same = readFile(name) == readFile(again);
+        fs::remove(again);
+        if (!same) throwOtherState(name);
     }
-    video->pipe->write(*pixels);
 }
 
-void RenderOutputs::finish() {
-    for (Video& video : videos_) {
-        video.pipe->finish();
-        files_.push_back(video.path.string());
+void RenderOutputs::finishVideo(const Output& output, int64_t begin, int64_t end) {
+    std::unique_ptr<VideoPipe> pipe;
+    for (int64_t frame = begin; frame < end; ++frame) {
+        const Image8 picture = readPng(numberedName(output.name, frame)).image8();
+        if (!pipe) pipe = std::make_unique<VideoPipe>(output.video, picture.extent, fps_);
+        pipe->write(picture);
     }
-    videos_.clear();
+    if (!pipe) return;
+    pipe->finish();
+    files_.push_back(output.video.string());
+    for (int64_t frame = begin; frame < end; ++frame) fs::remove(numberedName(output.name, frame));
+    std::error_code notEmpty;
+    fs::remove(fs::path(numberedName(output.name, begin)).parent_path(), notEmpty);  // unless others keep files there
+}
+
+void RenderOutputs::finish(int64_t begin, int64_t end) {
+    for (const Output& output : outputs_)
+        if (!output.video.empty()) finishVideo(output, begin, end);
 }
 
 }  // namespace lumi

@@ -80,6 +80,12 @@ Replay parseReplay(const std::string& text, const std::string& where) {
     return replay;
 }
 
+std::string stateTextOf(const std::filesystem::path& file) {
+    const std::string text = lowerExtension(file) == ".png" ? readPng(file).texts[kStateKey] : embeddedState(file);
+    if (text.empty()) throwBadInput({"holds no state of lumiscope", file.string(), "", ""});
+    return text;
+}
+
 Replay readReplay(const std::filesystem::path& file) {
     const std::string text = embeddedState(file);
     if (text.empty()) throwBadInput({"holds no state of lumiscope", file.string(), "", ""});

@@ -31,6 +31,10 @@ struct Replay {
     const nlohmann::json* valuesOf(FrameNumber frame) const;
 };
 
+/// The state inside a .exr, .png or .json that lumiscope wrote, all of which is read: a damaged file throws
+/// Error(BadInput), as does one without a state.
+std::string stateTextOf(const std::filesystem::path& file);
+
 /// Reads what StateLog::json() wrote. Throws Error(BadInput) headed by `where`.
 Replay parseReplay(const std::string& text, const std::string& where);
 /// From the state embedded in a .exr or .png, or a .json that holds the state alone.
