@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/sin_cos.h"
+
 namespace lumi {
 
 Vec2 sampleDisk(Vec2 u) {
@@ -10,8 +12,8 @@ Vec2 sampleDisk(Vec2 u) {
     if (s.x == 0 && s.y == 0) return Vec2(0);
     const bool wide = std::abs(s.x) > std::abs(s.y);
     const float radius = wide ? s.x : s.y;
-    const float angle = wide ? (kPi / 4) * (s.y / s.x) : kPi / 2 - (kPi / 4) * (s.x / s.y);
-    return radius * Vec2(std::cos(angle), std::sin(angle));
+    const SinCos angle = sinCosTurns(wide ? 0.125f * (s.y / s.x) : 0.25f - 0.125f * (s.x / s.y));
+    return radius * Vec2(angle.cosine, angle.sine);
 }
 
 Vec3 sampleCosineHemisphere(Vec2 u) {
@@ -22,15 +24,15 @@ Vec3 sampleCosineHemisphere(Vec2 u) {
 Vec3 sampleSphere(Vec2 u) {
     const float z = 1 - 2 * u.x;
     const float r = std::sqrt(std::max(0.0f, 1 - z * z));
-    const float phi = 2 * kPi * u.y;
-    return {r * std::cos(phi), r * std::sin(phi), z};
+    const SinCos phi = sinCosTurns(u.y);
+    return {r * phi.cosine, r * phi.sine, z};
 }
 
 Vec3 sampleCone(Vec2 u, float oneMinusCosMax) {
     const float height = u.x * oneMinusCosMax;  // 1 - cos
     const float r = std::sqrt(std::max(0.0f, height * (2 - height)));
-    const float phi = 2 * kPi * u.y;
-    return {r * std::cos(phi), r * std::sin(phi), 1 - height};
+    const SinCos phi = sinCosTurns(u.y);
+    return {r * phi.cosine, r * phi.sine, 1 - height};
 }
 
 Vec2 sampleTriangle(Vec2 u) {
@@ -45,10 +47,8 @@ Vec2 sampleTriangle(Vec2 u) {
 }
 
 Vec3 directionFromLatLong(Vec2 uv) {
-    const float phi = (uv.x - 0.5f) * 2 * kPi;
-    const float theta = uv.y * kPi;
-    const float s = std::sin(theta);
-    return {s * std::sin(phi), std::cos(theta), -s * std::cos(phi)};
+    const SinCos phi = sinCosTurns(uv.x - 0.5f), theta = sinCosTurns(0.5f * uv.y);
+    return {theta.sine * phi.sine, theta.cosine, -theta.sine * phi.cosine};
 }
 
 Vec2 latLongFromDirection(const Vec3& d) {

@@ -38,16 +38,22 @@ uint32_t sobolSecondDigits(uint32_t index) {
     return index ^ (index >> 16);
 }
 
-/// A scrambled (0,2)-pair. The first Sobol dimension's digits are the bits of the index itself.
-Vec2 sobolPair(uint32_t index, uint32_t scramble, uint32_t pair) {
-    const uint64_t seeds = mixBits((uint64_t(scramble) << 32) | pair);
-    const uint32_t seedX = static_cast<uint32_t>(seeds), seedY = static_cast<uint32_t>(seeds >> 32);
-    // The shuffle of the order is an Owen scramble too: blocks of a power of two stay blocks.
-    const uint32_t shuffled = reverseBits(owenScramble(reverseBits(index), pcgHash(seedX ^ seedY)));
-    const uint32_t x = owenScramble(shuffled, seedX);
-    const uint32_t y = owenScramble(sobolSecondDigits(shuffled), seedY);
-    return {unitFloat(reverseBits(x)), unitFloat(reverseBits(y))};
-}
+/// Scrambled (0,2)-pairs of one sample and pair of dimensions. The first Sobol dimension's digits are the bits of the
+/// index itself.
+class SobolPair {
+public:
+    SobolPair(uint32_t index, uint32_t scramble, uint32_t pair) {
+        const uint64_t seeds = mixBits((uint64_t(scramble) << 32) | pair);
+        seedX_ = static_cast<uint32_t>(seeds), seedY_ = static_cast<uint32_t>(seeds >> 32);
+        // The shuffle of the order is an Owen scramble too: blocks of a power of two stay blocks.
+        shuffled_ = reverseBits(owenScramble(reverseBits(index), pcgHash(seedX_ ^ seedY_)));
+    }
+    float x() const { return unitFloat(reverseBits(owenScramble(shuffled_, seedX_))); }
+    float y() const { return unitFloat(reverseBits(owenScramble(sobolSecondDigits(shuffled_), seedY_))); }
+
+private:
+    uint32_t seedX_ = 0, seedY_ = 0, shuffled_ = 0;
+};
 
 constexpr int kHaltonDimensions = 128;
 
@@ -98,8 +104,8 @@ float SampleStream::get1(uint32_t dimension) const {
         case SamplerKind::Independent: return independent(index_, scramble_, dimension);
         case SamplerKind::Sobol: break;
     }
-    const Vec2 pair = sobolPair(index_, scramble_, dimension >> 1);
-    return (dimension & 1u) != 0 ? pair.y : pair.x;
+    const SobolPair pair(index_, scramble_, dimension >> 1);
+    return (dimension & 1u) != 0 ? pair.y() : pair.x();
 }
 
 Vec2 SampleStream::get2(uint32_t dimension) const {
@@ -110,7 +116,8 @@ Vec2 SampleStream::get2(uint32_t dimension) const {
             return {independent(index_, scramble_, dimension), independent(index_, scramble_, dimension + 1)};
         case SamplerKind::Sobol: break;
     }
-    return sobolPair(index_, scramble_, dimension >> 1);
+    const SobolPair pair(index_, scramble_, dimension >> 1);
+    return {pair.x(), pair.y()};
 }
 
 }  // namespace lumi

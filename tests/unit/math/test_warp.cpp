@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "math/hash.h"
+#include "math/sin_cos.h"
 #include "math/statistics.h"
 #include "math/warp.h"
 
@@ -33,6 +34,18 @@ double grid(double u, double v) {
 double turn(double y, double x) {
     const double angle = std::atan2(y, x) / (2 * M_PI);
     return angle < 0 ? angle + 1 : angle;
+}
+
+TEST(SinCosTurns, AgreesWithTheLibraryAllAround) {
+    for (int i = -40000; i <= 40000; ++i) {
+        const float turns = static_cast<float>(i) / 16384;
+        const double angle = 2 * 3.14159265358979323846 * turns;
+        const SinCos value = sinCosTurns(turns);
+        ASSERT_NEAR(value.sine, std::sin(angle), 2e-7) << turns;
+        ASSERT_NEAR(value.cosine, std::cos(angle), 2e-7) << turns;
+    }
+    EXPECT_EQ(sinCosTurns(0.25f).cosine, 0);
+    EXPECT_EQ(sinCosTurns(0.5f).sine, 0);
 }
 
 TEST(Warp, DiskIsUniform) {
