@@ -72,9 +72,15 @@ float tiledNoise(float x, float y, int periodX, int periodY, uint32_t seed) {
     const float fx = std::floor(x), fy = std::floor(y);
     const float tx = x - fx, ty = y - fy;
     const float sx = tx * tx * (3 - 2 * tx), sy = ty * ty * (3 - 2 * ty);
-    const auto wrap = [](int i, int period) { return ((i % period) + period) % period; };
-    const int x0 = wrap(static_cast<int>(fx), periodX), x1 = wrap(x0 + 1, periodX);
-    const int y0 = wrap(static_cast<int>(fy), periodY), y1 = wrap(y0 + 1, periodY);
+    // Divisions are most of the work: none where the place lies in the first period already.
+    const auto wrap = [](int i, int period) {
+        if (i >= 0 && i < period) return i;
+        const int rest = i % period;
+        return rest < 0 ? rest + period : rest;
+    };
+    const auto next = [](int i, int period) { return i + 1 < period ? i + 1 : 0; };
+    const int x0 = wrap(static_cast<int>(fx), periodX), x1 = next(x0, periodX);
+    const int y0 = wrap(static_cast<int>(fy), periodY), y1 = next(y0, periodY);
     const float top = glm::mix(randomAt(x0, y0, seed), randomAt(x1, y0, seed), sx);
     const float bottom = glm::mix(randomAt(x0, y1, seed), randomAt(x1, y1, seed), sx);
     return 2 * glm::mix(top, bottom, sy) - 1;
