@@ -1,6 +1,7 @@
 #include "scene/texture.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -45,20 +46,29 @@ int nearestTexel(float coordinate, int count, Wrap wrap) {
     return tap;
 }
 
-[[gnu::always_inline]] inline Vec4 texel(const TextureImage& image, const TextureImage::Level& level, int x, int y) {
-    const size_t offset = 4 * (static_cast<size_t>(y) * static_cast<size_t>(level.extent.width) +
-                               static_cast<size_t>(x));
-    if (!level.floats.empty()) {
-        const float* p = level.floats.data() + offset;
-        return {p[0], p[1], p[2], p[3]};
-    }
-    const uint8_t* p = level.bytes.data() + offset;
-    constexpr float kByte = 1.0f / 255;
-    if (image.srgb) {
-        const float* linear = linearFromSrgbTable();
-        return {linear[p[0]], linear[p[1]], linear[p[2]], static_cast<float>(p[3]) * kByte};
-    }
-    return Vec4(p[0], p[1], p[2], p[3]) * kByte;
+[[gnu::always_inline]] inline size_t texelOffset(const TextureImage::Level& level, int x, int y) {
+    return 4 * (static_cast<size_t>(y) * static_cast<size_t>(level.extent.width) + static_cast<size_t>(x));
+}
+
+/// Values of the 256 codes as they are stored in an image: linear or sRGB.
+const float* byteTable(bool srgb) {
+    static const std::array<float, 256> linear = [] {
+        std::array<float, 256> values{};
+        for (size_t i = 0; i < 256; ++i) values[i] = static_cast<float>(i) * (1.0f / 255);
+        return values;
+    }();
+    return srgb ? linearFromSrgbTable() : linear.data();
+}
+
+[[gnu::always_inline]] inline Vec4 decoded(const uint8_t* p, const float* colour, const float* alpha) {
+    return {colour[p[0]], colour[p[1]], colour[p[2]], alpha[p[3]]};
+}
+
+Vec4 texel(const TextureImage& image, const TextureImage::Level& level, int x, int y) {
+    const size_t offset = texelOffset(level, x, y);
+    if (level.floats.empty()) return decoded(level.bytes.data() + offset, byteTable(image.srgb), byteTable(false));
+    const float* p = level.floats.data() + offset;
+    return {p[0], p[1], p[2], p[3]};
 }
 
 Vec4 sampleLevel(const Texture& texture, const TextureImage::Level& level, Vec2 uv) {
@@ -68,11 +78,22 @@ Vec4 sampleLevel(const Texture& texture, const TextureImage::Level& level, Vec2 
         return texel(image, level, nearestTexel(uv.x, width, texture.wrapU), nearestTexel(uv.y, height, texture.wrapV));
     const Tap x = linearTap(uv.x, width, texture.wrapU);
     const Tap y = linearTap(uv.y, height, texture.wrapV);
-    const Vec4 top = texel(image, level, x.first, y.first) * (1 - x.weight) +
-                     texel(image, level, x.second, y.first) * x.weight;
-    const Vec4 bottom = texel(image, level, x.first, y.second) * (1 - x.weight) +
-                        texel(image, level, x.second, y.second) * x.weight;
-    return top * (1 - y.weight) + bottom * y.weight;
+    const auto blended = [&](const Vec4& a, const Vec4& b, const Vec4& c, const Vec4& d) {
+        const Vec4 top = a * (1 - x.weight) + b * x.weight, bottom = c * (1 - x.weight) + d * x.weight;
+        return top * (1 - y.weight) + bottom * y.weight;
+    };
+    const size_t corners[] = {texelOffset(level, x.first, y.first), texelOffset(level, x.second, y.first),
+                              texelOffset(level, x.first, y.second), texelOffset(level, x.second, y.second)};
+    if (level.floats.empty()) {
+        const float *colour = byteTable(image.srgb), *alpha = byteTable(false);
+        const auto at = [&](size_t corner) { return decoded(level.bytes.data() + corners[corner], colour, alpha); };
+        return blended(at(0), at(1), at(2), at(3));
+    }
+    const auto at = [&](size_t corner) {
+        const float* p = level.floats.data() + corners[corner];
+        return Vec4(p[0], p[1], p[2], p[3]);
+    };
+    return blended(at(0), at(1), at(2), at(3));
 }
 
 /// Base-2 logarithm of a positive float, exact at powers of two and linear between them (at most 0.086 too small):
@@ -172,16 +193,17 @@ Vec2 Texture::transformed(Vec2 uv) const {
     return Vec2(c * scaled.x + s * scaled.y, c * scaled.y - s * scaled.x) + offset;
 }
 
+float Texture::levelOf(float width) const {
+    const TextureImage::Level& finest = image->levels.front();
+    const float texels = width * std::sqrt(std::abs(scale.x * scale.y) * static_cast<float>(finest.extent.area()));
+    return texels > 1 ? std::min(coarseLog2(texels), static_cast<float>(image->levels.size() - 1)) : 0;
+}
+
 Vec4 Texture::sample(Vec2 uv, float width) const {
     if (!image) return Vec4(1);
-    const TextureImage::Level& finest = image->levels.front();
     uv = transformed(uv);
-    if (!finite(uv)) return texel(*image, finest, 0, 0);
-    const float texels = width * std::sqrt(std::abs(scale.x * scale.y) * static_cast<float>(finest.extent.area()));
-    if (!(texels > 1)) return sampleLevel(*this, finest, uv);
-
-    const float last = static_cast<float>(image->levels.size() - 1);
-    const float level = std::min(coarseLog2(texels), last);
+    if (!finite(uv)) return texel(*image, image->levels.front(), 0, 0);
+    const float level = levelOf(width);
     if (filter == TextureFilter::Nearest)
         return sampleLevel(*this, image->levels[static_cast<size_t>(level + 0.5f)], uv);
     const size_t lower = static_cast<size_t>(level);
@@ -189,6 +211,27 @@ Vec4 Texture::sample(Vec2 uv, float width) const {
     const Vec4 fine = sampleLevel(*this, image->levels[lower], uv);
     if (weight == 0) return fine;
     return fine * (1 - weight) + sampleLevel(*this, image->levels[lower + 1], uv) * weight;
+}
+
+Vec4 Texture::sampleNearestLevel(Vec2 uv, float width) const {
+    if (!image) return Vec4(1);
+    uv = transformed(uv);
+    if (!finite(uv)) return texel(*image, image->levels.front(), 0, 0);
+    return sampleLevel(*this, image->levels[static_cast<size_t>(levelOf(width) + 0.5f)], uv);
+}
+
+void Texture::prefetch(Vec2 uv, float width) const {
+    uv = transformed(uv);
+    if (!image || !finite(uv)) return;
+    const TextureImage::Level& level = image->levels[static_cast<size_t>(levelOf(width) + 0.5f)];
+    const auto [columns, rows] = level.extent;
+    const int x = nearestTexel(uv.x, columns, wrapU);
+    const Tap y = linearTap(uv.y, rows, wrapV);
+    for (const int row : {y.first, y.second}) {
+        const size_t start = texelOffset(level, x, row);
+        if (level.floats.empty()) __builtin_prefetch(level.bytes.data() + start);
+        else __builtin_prefetch(level.floats.data() + start);
+    }
 }
 
 float Texture::sampleAlpha(Vec2 uv) const {

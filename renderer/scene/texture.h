@@ -42,8 +42,16 @@ struct Texture {
     /// Linear RGBA at mesh coordinates `uv`. `width` is the lookup's footprint in units of uv (0: level 0, bilinear);
     /// between levels the lookup is trilinear. NaN coordinates give level 0's first texel.
     Vec4 sample(Vec2 uv, float width = 0) const;
+    /// As sample(), but from the one mip level nearest to the footprint: for lookups that are averaged anyway.
+    Vec4 sampleNearestLevel(Vec2 uv, float width) const;
+    /// Asks the caches for what sampleNearestLevel() will read, and most of what sample() will.
+    void prefetch(Vec2 uv, float width) const;
     /// Alpha channel alone, level 0: for alpha tests during traversal.
     float sampleAlpha(Vec2 uv) const;
+
+private:
+    /// Fractional mip level, within the pyramid, of a footprint that is `width` wide in uv.
+    float levelOf(float width) const;
 };
 
 /// Builds the pyramid above level 0. `image.levels` holds exactly level 0.

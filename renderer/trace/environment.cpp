@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "math/sin_cos.h"
 #include "math/warp.h"
 
 namespace lumi {
@@ -242,14 +243,11 @@ Vec3 EnvironmentLight::sample(Vec2 u, float& pdf, Vec2& place) const {
     };
     const Vec2 uv((static_cast<float>(column) + within(columnCdf, column, u.x)) / static_cast<float>(columns_),
                   (static_cast<float>(row) + within(rowCdf_.data(), row, u.y)) / static_cast<float>(rows_));
-    const float sine = std::sin(uv.y * kPi);
-    pdf = sine > 0 ? density(column, row) / (2 * kPi * kPi * sine) : 0;
+    const SinCos phi = sinCosTurns(uv.x - 0.5f), theta = sinCosTurns(0.5f * uv.y);
+    pdf = theta.sine > 0 ? density(column, row) / (2 * kPi * kPi * theta.sine) : 0;
     place = uv;
-    const auto texelX = static_cast<size_t>(uv.x * static_cast<float>(width_ - 1));
-    const auto texelY = static_cast<size_t>(uv.y * static_cast<float>(height_ - 1));
-    __builtin_prefetch(&texels_[texelY * static_cast<size_t>(width_) + texelX]);
-    if (texelY > 0) __builtin_prefetch(&texels_[(texelY - 1) * static_cast<size_t>(width_) + texelX]);
-    return toWorld(directionFromLatLong(uv));
+    // directionFromLatLong(), the sine of theta taken along.
+    return toWorld({theta.sine * phi.sine, theta.cosine, -theta.sine * phi.cosine});
 }
 
 float EnvironmentLight::pdf(const Vec3& direction) const {

@@ -18,10 +18,17 @@ public:
     bool black() const { return black_; }
     /// Radiance from unit world direction `direction`.
     Vec3 radiance(const Vec3& direction) const;
-    /// A direction with light, its density per solid angle and its place in the image, which is asked for from memory:
-    /// take radianceAt() a little later.
+    /// A direction with light, its density per solid angle and its place in the image.
     Vec3 sample(Vec2 u, float& pdf, Vec2& place) const;
     Vec3 radianceAt(Vec2 place) const { return image_ ? imageRadiance(place) : constant_; }
+    /// Asks the caches for what radianceAt() will read.
+    void prefetch(Vec2 place) const {
+        if (!image_) return;
+        const auto x = static_cast<size_t>(place.x * static_cast<float>(width_ - 1));
+        const auto y = static_cast<size_t>(place.y * static_cast<float>(height_ - 1));
+        __builtin_prefetch(&texels_[y * static_cast<size_t>(width_) + x]);
+        if (y > 0) __builtin_prefetch(&texels_[(y - 1) * static_cast<size_t>(width_) + x]);
+    }
     float pdf(const Vec3& direction) const;
     /// Mean over the sphere of the luminance.
     float meanLuminance() const { return meanLuminance_; }

@@ -25,16 +25,6 @@ ObserverNeeds joined(std::span<PathObserver* const> observers) {
     return all;
 }
 
-Vec3 transmittance(const Vec3& absorption, float distance) {
-    return isBlack(absorption) ? Vec3(1) : glm::exp(-absorption * distance);
-}
-
-/// Of what lies on one side of a surface: past the boundary of a solid, into it or out of it, else what the path is in.
-Vec3 absorptionTowards(const PathState& path, const Surface& surface, bool farSide) {
-    if (!farSide || !surface.inputs.solid) return path.absorption;
-    return surface.inputs.entering ? surface.absorption : Vec3(0);
-}
-
 }  // namespace
 
 Integrator::Integrator(const TraceScene& scene, const PathSettings& settings, uint32_t seed,
@@ -94,7 +84,7 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
             batch.hits.assign(count, RawHit());
         const bool wantsVertices = depth < needs_.vertexDepths;
         if (wantsVertices) batch.vertices.assign(batch.active.size(), PathVertex()), batch.vertexOf.resize(count);
-        if (!given) prefetchSurfaces(scene_.tables, batch.hits);
+        if (!given) arrive(batch, depth);
         batch.pending.clear();
         batch.shadowRays.clear();
         for (uint32_t row = 0; row < batch.active.size(); ++row) {
@@ -144,6 +134,29 @@ void Integrator::findHits(PathBatch& batch, int depth, bool coherent, TraceCount
     (depth == 0 ? counts.cameraRays : counts.bounceRays) += batch.rays.size();
 }
 
+/// Geometry of all hits before any is shaded: what a later step reads from memory is asked for in the one before.
+void Integrator::arrive(PathBatch& batch, int depth) const {
+    prefetchSurfaces(scene_.tables, batch.hits);
+    batch.geometry.resize(batch.active.size());
+    for (size_t row = 0; row < batch.active.size(); ++row) {
+        const RawHit& hit = batch.hits[row];
+        if (!hit.valid()) continue;
+        PathState& path = batch.paths[batch.active[row]];
+        path.cone.width += path.cone.spread * hit.distance;
+        path.throughput *= transmittance(path.absorption, hit.distance);
+        const InstanceRecord& instance = scene_.tables.instances[hit.instance];
+        if (instance.body >= 0 || isDark(instance, hit.primitive, depth)) continue;
+        const SurfacePoint point{hit.instance, hit.primitive, {hit.u, hit.v}, path.ray.time};
+        batch.geometry[row] = surfaceGeometry(scene_.tables, point, -path.ray.direction, path.cone.width);
+    }
+}
+
+/// Of the last surface nothing is asked but its light; does it have none?
+bool Integrator::isDark(const InstanceRecord& instance, uint32_t primitive, int depth) const {
+    return depth >= settings_.maxDepth && depth >= needs_.vertexDepths && instance.body < 0 &&
+           !scene_.tables.materials[instance.materialOf(primitive)].emits;
+}
+
 void Integrator::shade(PathBatch& batch, uint32_t row, int depth, std::span<const SurfacePoint> firstPoints) const {
     const uint32_t index = batch.active[row];
     PathState& path = batch.paths[index];
@@ -163,15 +176,12 @@ void Integrator::shade(PathBatch& batch, uint32_t row, int depth, std::span<cons
         distance = hit.distance;
         point = surfacePoint(scene_.tables, hit, path.ray.origin + path.ray.direction * distance, path.ray.time);
     }
-    path.cone.width += path.cone.spread * distance;
-    path.throughput *= transmittance(path.absorption, distance);
-    // The last surface only shines.
     const bool last = depth >= settings_.maxDepth;
-    const InstanceRecord& instance = scene_.tables.instances[point.instance];
-    if (last && !vertex && instance.body < 0 && !scene_.tables.materials[instance.materialOf(point.primitive)].emits)
-        return;
+    if (isDark(scene_.tables.instances[point.instance], point.primitive, depth)) return;
 
-    Surface surface = evaluateSurface(scene_.tables, point, wo, path.cone.width);
+    const MipFilter mips = path.diffuseBefore ? MipFilter::Nearest : MipFilter::Between;
+    Surface surface = firstPoints.empty() ? evaluateSurface(scene_.tables, point, batch.geometry[row], wo, mips)
+                                          : evaluateSurface(scene_.tables, point, wo, path.cone.width);
     surface.inputs.multipleScattering = settings_.multipleScattering;
     if (settings_.regularize && path.diffuseBefore) surface.inputs.widen(settings_.regularizeRoughness);
     if (vertex) {
@@ -246,60 +256,6 @@ void Integrator::describeVertex(const PathState& path, const Surface& surface, c
     vertex.throughput = path.throughput;
 }
 
-void Integrator::sampleLight(PathBatch& batch, uint32_t index, const Surface& surface, const Frame& frame,
-                             const Bsdf& bsdf, int depth, PathVertex* vertex) const {
-    PathState& path = batch.paths[index];
-    const LightReceiver receiver = receiverAt(path, surface);
-    const Vec2 pick = path.stream.get2(dimension::vertex(depth, dimension::kLight));
-    const Vec2 u = path.stream.get2(dimension::vertex(depth, dimension::kLightPoint));
-    LightSample light;
-    if (!scene_.lights.sample(receiver, pick, u, light)) return;
-    if (settings_.strategy == DirectStrategy::Bsdf && light.hittable) return;
-
-    // Scattering towards the light; the shading normal may not let it through the surface.
-    const float side = glm::dot(light.direction, surface.geometricNormal);
-    const Vec3 wi = frame.toLocal(light.direction);
-    if (side * wi.z <= 0) return;
-    const BsdfValue f = bsdf.evaluate(wi);
-    const bool mixed = light.hittable && settings_.strategy == DirectStrategy::Mis;
-    const float weight = (mixed ? misWeight(light.pdf, f.pdf) : 1) / light.pdf;
-    Vec3 radiance = scene_.lights.radiance(light) * weight;
-    if (std::isfinite(light.distance))
-        radiance *= transmittance(absorptionTowards(path, surface, wi.z < 0), light.distance);
-    Vec3 diffuse = f.diffuse * radiance, specular = f.specular * radiance;
-    Vec3 sum = diffuse + specular;
-    if (isBlack(sum)) return;
-    if (!isFinite(sum * path.throughput)) {
-        ++batch.nonFinite;
-        return;
-    }
-    if (settings_.clamp && depth > 0) {
-        const float kept = maxComponent(limited(path, sum, depth)) / maxComponent(sum);
-        diffuse *= kept, specular *= kept, sum *= kept;
-    }
-    if (vertex) {
-        vertex->lightSampled = true;
-        vertex->lightPosition = light.position;
-        vertex->light = light.light;
-    }
-    const Vec3 normal = side > 0 ? surface.geometricNormal : -surface.geometricNormal;
-    BatchRay ray;
-    ray.origin = offsetOrigin(surface.position, normal, surface.offset);
-    ray.time = path.ray.time;
-    ray.id = pcgHash(path.hash + static_cast<uint32_t>(2 * depth + 1));
-    ray.direction = light.direction;
-    if (std::isfinite(light.distance)) {
-        const Vec3 segment = light.target - ray.origin;
-        const float length = glm::length(segment);
-        if (!(length > 0)) return;
-        ray.direction = segment / length;
-        ray.tmax = length;
-    }
-    // With the throughput of now: the path goes on before its shadow rays are traced.
-    batch.pending.push_back({index, path.throughput * sum, diffuse, specular});
-    batch.shadowRays.push_back(ray);
-}
-
 bool Integrator::continuePath(PathState& path, const Surface& surface, const Frame& frame, const Bsdf& bsdf,
                               const Vec3& wo, int depth, PathVertex* vertex) const {
     const BsdfSample sample = bsdf.sample(path.stream.get1(dimension::vertex(depth, dimension::kLobe)),
@@ -348,39 +304,6 @@ bool Integrator::continuePath(PathState& path, const Surface& surface, const Fra
     path.ray.tmin = 0;
     path.ray.tmax = kInfinity;
     return true;
-}
-
-void Integrator::traceShadows(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const {
-    const size_t count = batch.shadowRays.size();
-    if (count == 0) return;
-    batch.blocked.resize(count);
-    counts.shadowRays += count;
-    const Coherence coherence = coherent && depth == 0 ? Coherence::Coherent : Coherence::Incoherent;
-    const bool wantsVertices = depth < needs_.vertexDepths;
-    if (needs_.blocker && wantsVertices) {
-        batch.blockers.resize(count);
-        intersectRays(scene_.embree, batch.shadowRays, batch.blockers, coherence);
-        for (size_t i = 0; i < count; ++i) {
-            batch.blocked[i] = batch.blockers[i].valid();
-            if (!batch.blocked[i]) continue;
-            const BatchRay& ray = batch.shadowRays[i];
-            batch.vertices[batch.vertexOf[batch.pending[i].path]].blocker = surfacePoint(
-                scene_.tables, batch.blockers[i], ray.origin + ray.direction * batch.blockers[i].distance, ray.time);
-        }
-    } else {
-        occludedRays(scene_.embree, batch.shadowRays, batch.blocked, coherence);
-    }
-    for (size_t i = 0; i < count; ++i) {
-        if (batch.blocked[i]) continue;
-        const PendingLight& light = batch.pending[i];
-        PathState& path = batch.paths[light.path];
-        add(batch, path, light.contribution);
-        if (!wantsVertices) continue;
-        PathVertex& vertex = batch.vertices[batch.vertexOf[light.path]];
-        vertex.lightVisible = true;
-        vertex.directDiffuse = light.diffuse;
-        vertex.directSpecular = light.specular;
-    }
 }
 
 void Integrator::report(PathBatch& batch, int depth) const {

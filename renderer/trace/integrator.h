@@ -32,6 +32,8 @@ public:
 
 private:
     void findHits(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const;
+    void arrive(PathBatch& batch, int depth) const;
+    bool isDark(const InstanceRecord& instance, uint32_t primitive, int depth) const;
     void shade(PathBatch& batch, uint32_t index, int depth, std::span<const SurfacePoint> firstPoints) const;
     void shadeMiss(PathState& path, int depth, PathVertex* vertex, PathBatch& batch) const;
     void addEmission(PathState& path, const Surface& surface, int depth, PathVertex* vertex, PathBatch& batch) const;
@@ -41,6 +43,7 @@ private:
                       int depth, PathVertex* vertex) const;
     void describeVertex(const PathState& path, const Surface& surface, const Vec3& wo, int depth,
                         PathVertex& vertex) const;
+    void addLights(PathBatch& batch, int depth) const;
     void traceShadows(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const;
     LightReceiver receiverAt(const PathState& path, const Surface& surface) const;
     float misWeight(float pdf, float otherPdf) const;

@@ -5,6 +5,7 @@
 #include "trace/observer.h"
 #include "trace/packets.h"
 #include "trace/sampler.h"
+#include "trace/surface.h"
 #include "trace/tracer.h"
 
 namespace lumi {
@@ -30,8 +31,20 @@ struct PathState {
 struct PendingLight {
     uint32_t path = 0;
     Vec3 contribution{0};          ///< to the path, throughput included
-    Vec3 diffuse{0}, specular{0};  ///< radiance towards wo if nothing blocks it, MIS-weighted, clamped
+    Vec3 diffuse{0}, specular{0};  ///< radiance towards wo if nothing blocks it, MIS-weighted
+    bool sky = false;              ///< all three are still to be multiplied by the sky's radiance at `skyPlace`
+    Vec2 skyPlace{0};
 };
+
+inline Vec3 transmittance(const Vec3& absorption, float distance) {
+    return isBlack(absorption) ? Vec3(1) : glm::exp(-absorption * distance);
+}
+
+/// Of what lies on one side of a surface: past the boundary of a solid, into it or out of it, else what the path is in.
+inline Vec3 absorptionTowards(const PathState& path, const Surface& surface, bool farSide) {
+    if (!farSide || !surface.inputs.solid) return path.absorption;
+    return surface.inputs.entering ? surface.absorption : Vec3(0);
+}
 
 /// Scratch of the integrator for one batch; reused from batch to batch. Belongs to one thread at a time.
 struct PathBatch {
@@ -42,6 +55,7 @@ struct PathBatch {
     std::vector<uint32_t> active;  ///< indices of paths that have a ray, in order of their starts
     std::vector<BatchRay> rays;    ///< of the active paths
     std::vector<RawHit> hits;
+    std::vector<SurfaceGeometry> geometry;  ///< of hits on triangles
     std::vector<PendingLight> pending;
     std::vector<BatchRay> shadowRays;
     std::vector<uint8_t> blocked;

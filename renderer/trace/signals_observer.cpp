@@ -54,7 +54,9 @@ void SignalsObserver::beginTile(int tile) {
         }
     }
     if (!sums) sums = std::make_unique<TileSums>();
-    sums->pixels.assign(kTile * kTile, PixelSums());
+    // Without vertices only the radiance is written, by finished().
+    if (needs_.vertexDepths > 0) sums->pixels.assign(kTile * kTile, PixelSums());
+    else sums->pixels.resize(kTile * kTile);
     if (sampling_.samplesPerPixel > 1) {
         sums->radiance.resize(kTile * kTile);
         for (auto& sum : sums->radiance) sum.clear();
@@ -198,6 +200,7 @@ void SignalsObserver::writePixel(int x, int y, const TileSums& tile, size_t loca
                 spread[c] = static_cast<float>(tile.moments[local][static_cast<size_t>(c)].sampleVariance());
         set3(Signal::SampleVariance, x, y, spread);
     }
+    if (needs_.vertexDepths == 0) return;
     if (wanted_.has(Signal::Visibility))
         signals_[Signal::Visibility].at(0, x, y) =
             sums.lightSamples > 0 ? static_cast<float>(sums.lightsSeen) / static_cast<float>(sums.lightSamples) : 1.0f;

@@ -67,6 +67,11 @@ Vec2 alongSurface(const Frame& local, const TangentFrame& frame, Vec2 direction)
     return glm::length(along) > 1e-6f ? along : Vec2(1, 0);
 }
 
+uint32_t materialOf(const SceneTables& tables, const SurfacePoint& point) {
+    const uint32_t material = tables.instances[point.instance].materialOf(point.primitive);
+    return material < tables.materials.size() ? material : 0;
+}
+
 Surface bodySurface(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo) {
     const InstanceRecord& r = tables.instances[point.instance];
     const LightShape& shape = tables.bodies[static_cast<size_t>(r.body)].shape;
@@ -115,30 +120,58 @@ SurfacePoint surfacePoint(const SceneTables& tables, const RawHit& hit, const Ve
     return point;
 }
 
-Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo, float width) {
+SurfaceGeometry surfaceGeometry(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo, float width) {
     const InstanceRecord& r = tables.instances[point.instance];
-    if (r.body >= 0) return bodySurface(tables, point, wo);
     const UVec3 t = r.triangles[point.primitive];
     const Vec2 b = point.barycentrics;
 
     // Position and geometric normal, in the space of the vertices, then in the world.
     const Vec3 p0 = r.positions[t.x];
-    Vec3 edge1 = r.positions[t.y] - p0, edge2 = r.positions[t.z] - p0;
-    Surface s;
-    s.point = point;
-    s.position = p0 + edge1 * b.x + edge2 * b.y;
-    Vec3 outward = glm::cross(edge1, edge2);
+    SurfaceGeometry g;
+    g.edge1 = r.positions[t.y] - p0, g.edge2 = r.positions[t.z] - p0;
+    g.position = p0 + g.edge1 * b.x + g.edge2 * b.y;
+    Vec3 outward = glm::cross(g.edge1, g.edge2);
+    g.twiceArea = glm::length(outward);
     if (r.inWorld) {
         if (r.mirrored) outward = -outward;
     } else {
-        s.position = transformPoint(r.worldFromObject, s.position);
+        g.position = transformPoint(r.worldFromObject, g.position);
         outward = r.normalFromObject * outward;
-        edge1 = transformVector(r.worldFromObject, edge1);
-        edge2 = transformVector(r.worldFromObject, edge2);
-        s.offset = r.objectScale * 0x1p-18f;
+        g.edge1 = transformVector(r.worldFromObject, g.edge1);
+        g.edge2 = transformVector(r.worldFromObject, g.edge2);
+        g.twiceArea = glm::length(glm::cross(g.edge1, g.edge2));
+        g.offset = r.objectScale * 0x1p-18f;
     }
-    s.outwardNormal = unitOr(outward, wo);
-    s.frontFace = glm::dot(s.outwardNormal, wo) >= 0;
+    g.outwardNormal = unitOr(outward, wo);
+    const float cosine = glm::dot(g.outwardNormal, wo);
+    g.frontFace = cosine >= 0;
+    g.footprint = width / std::sqrt(std::max(std::abs(cosine), 0.04f));
+
+    const MaterialRecord& material = tables.materials[materialOf(tables, point)];
+    TextureLookups lookup(r, t, b, g.footprint, g.twiceArea, MipFilter::Nearest);
+    prefetchMaterial(material, lookup);
+    return g;
+}
+
+Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo, float width) {
+    const bool body = tables.instances[point.instance].body >= 0;
+    const SurfaceGeometry geometry = body ? SurfaceGeometry() : surfaceGeometry(tables, point, wo, width);
+    return evaluateSurface(tables, point, geometry, wo, MipFilter::Between);
+}
+
+Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, const SurfaceGeometry& geometry,
+                        const Vec3& wo, MipFilter mips) {
+    const InstanceRecord& r = tables.instances[point.instance];
+    if (r.body >= 0) return bodySurface(tables, point, wo);
+    const UVec3 t = r.triangles[point.primitive];
+    const Vec2 b = point.barycentrics;
+    const Vec3 &edge1 = geometry.edge1, &edge2 = geometry.edge2;
+    Surface s;
+    s.point = point;
+    s.position = geometry.position;
+    s.offset = geometry.offset;
+    s.outwardNormal = geometry.outwardNormal;
+    s.frontFace = geometry.frontFace;
     s.geometricNormal = s.frontFace ? s.outwardNormal : -s.outwardNormal;
 
     // Smooth normal of the front face.
@@ -150,16 +183,12 @@ Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, co
     }
 
     // Material, textures filtered over the footprint.
-    s.material = r.materialOf(point.primitive);
-    if (s.material >= tables.materials.size()) s.material = 0;
+    s.material = materialOf(tables, point);
     const MaterialRecord& material = tables.materials[s.material];
-    const float cosine = std::abs(glm::dot(s.geometricNormal, wo));
-    const float footprint = width / std::sqrt(std::max(cosine, 0.04f));
-    const float twiceArea = glm::length(glm::cross(edge1, edge2));
-    evaluateMaterial(material, r, t, b, footprint, twiceArea, s);
+    TextureLookups lookup(r, t, b, geometry.footprint, geometry.twiceArea, mips);
+    evaluateMaterial(material, lookup, s);
 
     const Vec3 unmapped = smooth;
-    TextureLookups lookup(r, t, b, footprint, twiceArea);
     const auto frameOf = [&](const Texture& texture) {
         return tangentFrame(r, point.primitive, t, b, objectNormal, edge1, edge2, unmapped, texture);
     };

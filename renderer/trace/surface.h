@@ -3,6 +3,7 @@
 #include "trace/packets.h"
 #include "trace/ray.h"
 #include "trace/scene_tables.h"
+#include "trace/texture_lookups.h"
 
 namespace lumi {
 
@@ -25,10 +26,27 @@ struct Surface {
 /// The name of a hit: bodies of lights are named by where they were hit.
 SurfacePoint surfacePoint(const SceneTables& tables, const RawHit& hit, const Vec3& hitPosition, float time);
 
-/// Asks the caches for what evaluateSurface() will read of these hits.
+/// Asks the caches for what surfaceGeometry() will read of these hits.
 void prefetchSurfaces(const SceneTables& tables, std::span<const RawHit> hits);
 
-/// Interpolates and shades `point` as seen along unit `wo`; `width` is the footprint's width in metres (for mips).
+/// Where a triangle was hit, before its material is looked up. World space.
+struct SurfaceGeometry {
+    Vec3 position{0};
+    Vec3 edge1{0}, edge2{0};      ///< of the triangle
+    Vec3 outwardNormal{0, 0, 1};  ///< as in Surface, and the next two
+    bool frontFace = true;
+    float offset = 0;
+    float footprint = 0;  ///< width of texture lookups on the surface, metres
+    float twiceArea = 0;  ///< of the triangle
+};
+
+/// The geometry of `point` (not on a light's body) as seen along unit `wo`; `width` is the footprint's width in metres.
+/// Asks the caches for the material's texels: shade a little later.
+SurfaceGeometry surfaceGeometry(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo, float width);
+
+/// Interpolates and shades `point` as seen along unit `wo`. `geometry` of bodies is not read.
+Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, const SurfaceGeometry& geometry,
+                        const Vec3& wo, MipFilter mips);
 Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo, float width);
 
 /// Shading normal in object space in the mesh's rest pose, on wo's side, unit; normal maps left out.

@@ -14,9 +14,24 @@ Vec3 unitInterval(const Vec3& v) { return {unitInterval(v.x), unitInterval(v.y),
 
 }  // namespace
 
-void evaluateMaterial(const MaterialRecord& m, const InstanceRecord& instance, const UVec3& t, Vec2 b, float footprint,
-                      float twiceArea, Surface& surface) {
-    TextureLookups lookup(instance, t, b, footprint, twiceArea);
+void prefetchMaterial(const MaterialRecord& m, TextureLookups& lookup) {
+    if (!m.textures) return;
+    const Material& source = *m.source;
+    const auto ask = [&](uint32_t flag, const Texture& texture) {
+        if (m.textures & flag) lookup.prefetch(texture);
+    };
+    ask(MaterialRecord::kBaseColor, source.baseColorTexture);
+    ask(MaterialRecord::kMetallicRoughness, source.metallicRoughnessTexture);
+    ask(MaterialRecord::kNormal, source.normalTexture);
+    ask(MaterialRecord::kSpecular, source.specularTexture);
+    ask(MaterialRecord::kSpecularColor, source.specularColorTexture);
+    ask(MaterialRecord::kTransmission, source.transmissionTexture);
+}
+
+void evaluateMaterial(const MaterialRecord& m, TextureLookups& lookup, Surface& surface) {
+    const InstanceRecord& instance = lookup.instance();
+    const UVec3& t = lookup.triangle();
+    const Vec2 b = lookup.barycentrics();
     BsdfInputs& in = surface.inputs;
     in.baseColor = m.baseColor;
     in.metallic = m.metallic, in.roughness = m.roughness;

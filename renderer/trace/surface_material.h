@@ -5,10 +5,11 @@
 namespace lumi {
 
 /// Fills the material side of `surface` (inputs, emission, absorption): factors times textures times vertex colour.
-/// `footprint` is the lookups' width in metres on the surface, `twiceArea` that of the triangle in the world.
 /// Values that are not finite or out of range become the nearest that are valid.
-void evaluateMaterial(const MaterialRecord& material, const InstanceRecord& instance, const UVec3& triangle,
-                      Vec2 barycentrics, float footprint, float twiceArea, Surface& surface);
+void evaluateMaterial(const MaterialRecord& material, TextureLookups& lookup, Surface& surface);
+
+/// Asks the caches for the texels of what evaluateMaterial() and mappedNormal() will look up, layers left out.
+void prefetchMaterial(const MaterialRecord& material, TextureLookups& lookup);
 
 /// Radiance that the front (or, if two-sided, either) face emits.
 Vec3 emissionAt(const MaterialRecord& material, const InstanceRecord& instance, const UVec3& triangle,

@@ -120,6 +120,24 @@ TEST(Texture, FootprintChoosesTheLevelAndBlendsBetweenTwo) {
     EXPECT_NEAR(texture.sample({0.1f, 0.1f}, kInfinity).x, byte(200), 1e-6f);
 }
 
+TEST(Texture, TheNearestLevelIsOneOfTheTwoThatAreBlended) {
+    auto image = std::make_shared<TextureImage>();
+    image->levels.push_back({{8, 8}, std::vector<uint8_t>(256), {}});
+    for (size_t i = 0; i < 256; ++i) image->levels[0].bytes[i] = static_cast<uint8_t>(i * 37);
+    buildMips(*image);
+    Texture texture;
+    texture.image = image;
+    for (const float width : {0.0f, 0.125f, 0.25f, 0.5f, 1.0f, 8.0f})  // whole levels
+        for (const float u : {0.1f, 0.45f, 0.8f}) {
+            texture.prefetch({u, 0}, width);
+            EXPECT_EQ(texture.sampleNearestLevel({u, 0}, width), texture.sample({u, 0}, width)) << width;
+        }
+    EXPECT_EQ(texture.sampleNearestLevel({0.1f, 0}, 0.3f), texture.sample({0.1f, 0}, 0.25f));
+    EXPECT_EQ(texture.sampleNearestLevel({0.1f, 0}, 0.45f), texture.sample({0.1f, 0}, 0.5f));
+    EXPECT_EQ(texture.sampleNearestLevel({NAN, 0}, 0.3f), texture.sample({NAN, 0}, 0.3f));
+    EXPECT_EQ(Texture().sampleNearestLevel({0.1f, 0}, 0.3f), Vec4(1));
+}
+
 TEST(Texture, CoordinatesThatAreNotFiniteGiveTheFirstTexel) {
     const Texture texture = row({30, 40, 80, 200});
     for (const float bad : {std::nanf(""), kInfinity, -kInfinity}) {
