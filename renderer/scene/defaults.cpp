@@ -122,8 +122,9 @@ float enclosureOf(const FirstHits& hits) {
 }
 
 /// Stands in a room and looks along its longer horizontal axis: from the middle, or, if the room is open at one end of
-/// the axis, from there.
-void standInside(const Vec3& centre, const Vec3& half, const FirstHits& hits, Camera& camera) {
+/// the axis, from there. False, and nothing done, if the first thing in sight is right before the camera: the middle of
+/// the bounds is then some corner of an object.
+bool standInside(const Vec3& centre, const Vec3& half, const FirstHits& hits, Camera& camera) {
     const auto isOpen = [&](int axis, int end) {
         return hits.distance[static_cast<size_t>(kSpread + 2 * axis + end)] == kInfinity;
     };
@@ -133,8 +134,11 @@ void standInside(const Vec3& centre, const Vec3& half, const FirstHits& hits, Ca
     if (nearlySquare && openEnds(axis) != 1 && openEnds(1 - axis) == 1) axis = 1 - axis;
     const Vec3 along = axis == 0 ? Vec3(half.x, 0, 0) : Vec3(0, 0, half.z);
     const Vec3 forward = openEnds(axis) == 1 ? (isOpen(axis, 0) ? -along : along) : (axis == 0 ? along : -along);
+    const int end = forward.x + forward.z > 0 ? 0 : 1;
+    if (hits.distance[static_cast<size_t>(kSpread + 2 * axis + end)] < 0.25f * half[2 * axis]) return false;
     camera.eye = openEnds(axis) == 1 ? centre - 0.98f * forward : centre;
     camera.target = centre + forward;
+    return true;
 }
 
 }  // namespace
@@ -148,9 +152,8 @@ Camera defaultCamera(const Scene& scene) {
     const Bounds3 bounds = scene.restBounds();
     if (bounds.empty() || !isFinite(bounds.size())) return camera;
     const Vec3 centre = bounds.centre(), half = glm::max(0.5f * bounds.size(), Vec3(1e-6f));
-    if (const FirstHits hits = lookAround(scene, centre); enclosureOf(hits) >= 0.75f) {
-        standInside(centre, half, hits, camera);
-    } else {
+    const FirstHits hits = lookAround(scene, centre);
+    if (enclosureOf(hits) < 0.75f || !standInside(centre, half, hits, camera)) {
         const Vec3 from = glm::normalize(Vec3(0.35f, 0.22f, 1));
         const Mat3 axes(lookAt(from, Vec3(0)));
         camera.target = centre;

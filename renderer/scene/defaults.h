@@ -7,7 +7,8 @@ namespace lumi {
 /// The camera of a scene that has none, named "default", with a vertical angle of 45 degrees. If three of four rays from
 /// the centre of the bounds hit something that faces the centre, as a room's walls do and a solid's inside does not, it
 /// stands there and looks along the longer horizontal axis, or, if the room is open at one end of it, stands at that
-/// end; otherwise it frames the bounds from the front, a little from the right and above.
+/// end. Otherwise, and if something is right before it there, it frames the bounds from the front, a little from the
+/// right and above.
 Camera defaultCamera(const Scene& scene);
 
 /// Share of directions from `origin` in which the first thing met shows its front, of a few dozen spread evenly over the

@@ -56,6 +56,16 @@ TEST(DefaultCamera, StandsAtTheOpenEndOfARoom) {
     EXPECT_GT(glm::normalize(turned.target - turned.eye).x, 0.9999f);
 }
 
+TEST(DefaultCamera, FramesScenesWhoseMiddleIsANook) {
+    // A closet behind the middle of a long shelf: closed around the centre, but nothing to stand in.
+    Scene scene = sceneOf(roomMesh(Vec3(2)));
+    Mesh shelf = boxMesh({40, 2, 0.1f});
+    for (Vec3& p : shelf.positions) p.z += 1.5f;
+    scene.instances.push_back({"shelf", std::make_shared<const Mesh>(shelf), -1, -1, -1, -1});
+    EXPECT_EQ(enclosure(scene, scene.restBounds().centre()), 1);
+    EXPECT_GT(glm::distance(defaultCamera(scene).eye, Vec3(0)), 20);
+}
+
 TEST(DefaultCamera, FramesWhatIsNotARoom) {
     // A floor seen from its own centre encloses nothing; every corner must be in a square image, and fill most of it.
     for (const Vec3& at : {Vec3(0), Vec3(100, -20, 7)}) {
