@@ -10,6 +10,7 @@
 #include "image/hdr.h"
 #include "image/png.h"
 #include "measure/metrics.h"
+#include "measure/temporal.h"
 
 namespace lumi {
 namespace {
@@ -108,7 +109,11 @@ int runCompare(const CompareOptions& options) {
     if (isSequence(options)) return runCompareSequence(options);
     if (options.frames) throwUsage({"one image has no frames", "--frames", "images called like frame.%04d.exr", ""});
     std::vector<const Metric*> wanted;
-    for (const std::string& id : options.metrics) wanted.push_back(&findMetric(id, "--metrics"));
+    for (const std::string& id : options.metrics) {
+        for (const SequenceMetric& metric : sequenceMetricCatalog())
+            if (id == metric.id) throwUsage({"\"" + id + "\" needs frames", "--metrics", "images called like frame.%04d.exr", ""});
+        wanted.push_back(&findMetric(id, "--metrics"));
+    }
     if (wanted.empty())
         for (const Metric& metric : metricCatalog()) wanted.push_back(&metric);
 

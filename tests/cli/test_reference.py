@@ -183,7 +183,7 @@ class Reference(CommandTest):
 
     def test_kill_at_random_moments(self):
         times = int(os.environ.get("LUMISCOPE_KILLS", "3"))
-        self.kill_and_resume(times, 3000 if times > 3 else 800, "120x90" if times > 3 else "60x45", 6 if times > 3 else 1.5)
+        self.kill_and_resume(times, 3000 if times > 3 else 400, "120x90" if times > 3 else "60x45", 6 if times > 3 else 0.8)
 
     @unittest.skipUnless(MPI_PROGRAM.exists() and shutil.which("mpirun"), "no MPI here")
     def test_mpi(self):

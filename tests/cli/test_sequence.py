@@ -8,10 +8,24 @@ import unittest
 
 from lumiscope import CommandTest, PROGRAM, TINY, main
 
-WALK = ["parade", *TINY, "--fps", 30, "--spp", 2]
+WALK = ["walk.json", *TINY, "--fps", 30, "--spp", 2]
+SCENE = """{"version": 1,
+ "assets": {"ball": {"sphere": {"radius": 0.5}}, "floor": {"rectangle": {"size": [6, 6]}}},
+ "instances": [{"asset": "floor"}, {"asset": "ball", "keys": [{"time": 0, "translate": [-1, 0.5, 0]},
+                                                              {"time": 2, "translate": [1, 0.5, 0]}]}],
+ "environment": {"constant": [1, 0.9, 0.8]},
+ "cameras": {"main": {"eye": [0, 1, 4], "look-at": [0, 0.5, 0],
+                      "keys": [{"time": 0, "eye": [0, 1, 4]}, {"time": 2, "eye": [1, 1.5, 4]}]}}}"""
 
 
 class Sequence(CommandTest):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "walk.json").write_text(SCENE)
+
+    def files(self):
+        return [name for name in super().files() if name != "walk.json"]
+
     def render(self, *arguments):
         return self.good("render", *WALK, *arguments, "--json").json
 
@@ -71,7 +85,7 @@ class Sequence(CommandTest):
         command = [PROGRAM, "render", *map(str, WALK), "--module", "none", "--frames", "40", "--quiet", "--out"]
         subprocess.run([*command, "w.%02d.png"], cwd=self.folder, check=True)
         whole = self.series("w.%02d.png", 40)
-        for wait in (0.4, 0.7, 1.0):
+        for wait in (0.1, 0.2, 0.3):
             process = subprocess.Popen([*command, "k.%02d.png"], cwd=self.folder)
             time.sleep(wait)
             process.send_signal(signal.SIGKILL)
@@ -117,8 +131,8 @@ class Sequence(CommandTest):
         self.refused(3, ["none.json"], "render", *common, "--camera-path", "none.json")
 
     def test_paths_out_and_in(self):
-        self.good("info", "parade", "--write-camera-path", "own.json", "--write-camera-path", "own.json")
-        self.good("info", "parade", "--write-camera-path", "out.ngp.json")
+        self.good("info", "walk.json", "--write-camera-path", "own.json")
+        self.good("info", "walk.json", "--write-camera-path", "out.ngp.json")
         own, ngp = (json.loads((self.folder / name).read_text()) for name in ("own.json", "out.ngp.json"))
         self.assertEqual((own["format"], own["version"]), ("lumiscope-camera-path", 1))
         self.assertEqual(len(own["keys"]), len(ngp["path"]))
