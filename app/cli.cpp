@@ -45,6 +45,13 @@ void addMachine(CLI::App& app, MachineOptions& machine, bool computes) {
     app.add_option("--memory-limit", machine.memoryLimit, "Refuse to use more, as 8G or 50% (75%)")->type_name("SIZE");
 }
 
+void addFrames(CLI::App& app, std::string& frames, std::string& warmUp) {
+    app.add_option("--frames", frames, "Frames 0..N-1, or A..B without B; history is empty at A (1)")
+        ->type_name("N|A..B")->take_last();
+    app.add_option("--warm-up", warmUp, "Frames to run before the first without writing them (0)")
+        ->type_name("N")->take_last();
+}
+
 /// Says which option was meant, where CLI11 only says which one it does not know.
 [[noreturn]] void throwParseError(const CLI::App& app, const CLI::ParseError& error) {
     const CLI::App* active = &app;
@@ -121,10 +128,8 @@ private:
         app->add_option("--replay", render.replay, "Make the image of a .exr, .png or .json again from the state inside")
             ->type_name("FILE");
         addShared(*app, renderText_, render.scene);
-        app->add_option("--frames", frames_, "Frames 0..N-1, or A..B without B; history is empty at A (1)")
-            ->type_name("N|A..B");
+        addFrames(*app, frames_, warmUp_);
         addCameraPath(*app, render.scene);
-        app->add_option("--warm-up", warmUp_, "Frames to run before the first without writing them (0)")->type_name("N");
         app->add_option("--out", render.out,
                         "File to write: .exr, .png or .mp4, %04d is the frame number; repeatable "
                         "(<scene>.<module>.exr, a free name)")
@@ -270,9 +275,15 @@ private:
         app->add_option("--samples", line_.view.samples, "Without a script: samples a pixel before the shot (16)")
             ->type_name("N")
             ->check(CLI::Range(1, 1 << 20).description(""));
+        addFrames(*app, frames_, warmUp_);
+        app->add_option("--buffers", line_.view.buffers,
+                        "Write an .exr beside each PNG, with these layers, as `list buffers` names them, or all")
+            ->type_name("NAME,...")->take_last();
+        app->add_flag("--half", line_.view.half, "Store colours of .exr files as half");
+        addProgress(*app);
         addShared(*app, viewText_, viewScene_);
         addMachine(*app, line_.machine, true);
-        app->footer("Example:\n  lumiscope view cornell --offscreen --out shots --module accumulate --module none");
+        app->footer(viewFooter());
     }
 
     CommandLine finished() {
@@ -295,7 +306,7 @@ private:
         if (render.scene.modules.size() > 1)
             throwUsage({"render runs one module", "--module", "one instance", ""});
         if (!frames_.empty()) render.frames = parseFrames(frames_);
-        if (!warmUp_.empty()) render.warmUp = parseWhole(warmUp_, "--warm-up", "a number of frames", 0);
+        render.warmUp = parseWarmUp(warmUp_, render.frames);
         checkTime(render);
         render.progress = progress();
         if (render.scene.scene.empty() && render.replay.empty())
@@ -306,11 +317,8 @@ private:
                         "only SCENE (where it is now), --out and options of the machine beside it", ""});
     }
 
-    /// The frames' numbers give the time, and there are none before the first.
+    /// The frames' numbers give the time.
     static void checkTime(const RenderOptions& render) {
-        if (render.warmUp > render.frames.begin)
-            throwUsage({"there are not so many frames before the first", "--warm-up",
-                        "at most " + std::to_string(render.frames.begin), std::to_string(render.warmUp)});
         if (render.frames.end <= 1) return;
         for (const TypedValue& value : render.scene.values)
             if (value.id == "time")
@@ -361,6 +369,18 @@ private:
         if (!offscreen_) throwUsage({"view draws without a display", "", "--offscreen", ""});
         if (line_.view.out.empty()) throwUsage({"view needs a folder", "", "--out DIR", ""});
         if (!windowSize_.empty()) line_.view.size = parseSize(windowSize_, "--window");
+        line_.view.progress = progress();
+        if (line_.view.half && line_.view.buffers.empty()) throwUsage({"only .exr files have half colours", "--half", "--buffers", ""});
+        finishViewFrames();
+    }
+
+    void finishViewFrames() {
+        ViewOptions& view = line_.view;
+        if (frames_.empty() && !warmUp_.empty()) throwUsage({"warms up for frames", "--warm-up", "--frames beside it", ""});
+        if (frames_.empty()) return;
+        if (!view.script.empty()) throwUsage({"a script says itself what is drawn", "--frames", "either of the two", ""});
+        view.frames = parseFrames(frames_);
+        view.warmUp = parseWarmUp(warmUp_, *view.frames);
     }
 
     CLI::App app_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/compare_command.h"
+#include "app/frame_range.h"
 #include "app/view.h"
 
 namespace lumi {
@@ -27,13 +28,6 @@ struct SceneOptions {
     std::vector<TypedValue> values;
     std::filesystem::path cameraPath;  ///< that the camera follows, for render, reference and info; may be empty
 };
-
-/// Half-open.
-struct FrameRange {
-    int64_t begin = 0, end = 1;
-};
-
-enum class Progress { Auto, Always, Never };
 
 struct RenderOptions {
     SceneOptions scene;

@@ -89,6 +89,18 @@ std::string referenceFooter() {
            sceneList() + "\n" + kExitCodes;
 }
 
+std::string viewFooter() {
+    return "Examples:\n"
+           "  lumiscope view cornell --offscreen --out shots --module accumulate --module none\n"
+           "  lumiscope view parade --offscreen --out shots --module none --frames 0..24 --buffers all\n"
+           "  lumiscope view room --offscreen --out shots --script tour.txt\n\n"
+           "With --frames there is one PNG of each frame, named by its number. The commands of a script, one a line:\n"
+           "  size W H  scale N  mouse X Y  hover NAME  press|release BUTTON  wheel N  click|double-click NAME\n"
+           "  drag NAME DX DY  key CHORD  hold|lift KEY  text WORDS  drop PATH  set ID VALUE  pause N\n"
+           "  wait-load  wait-shown  wait-frame N  wait-frames N  wait-spp N  wait-signals  wait-message TEXT\n"
+           "  shot NAME  dump-ui NAME";
+}
+
 std::string compareFooter() {
     return "Examples:\n"
            "  lumiscope compare noisy.exr reference.exr\n"

@@ -11,5 +11,6 @@ std::string renderFooter();
 std::string benchFooter();
 std::string compareFooter();
 std::string referenceFooter();
+std::string viewFooter();
 
 }  // namespace lumi

@@ -6,9 +6,9 @@
 #include <set>
 
 #include "app/commands.h"
-#include "app/signals_check.h"
 #include "base/files.h"
 #include "base/memory.h"
+#include "session/signals_check.h"
 
 namespace lumi {
 using nlohmann::json;
@@ -132,7 +132,11 @@ int runInfo(const SceneOptions& options, bool check, const std::filesystem::path
     const std::filesystem::path file = findScene(options.scene);
     const auto scene = openScene(file, options, log, stop);
     const Document document = makeDocument(scene, options);
-    const std::vector<FrameCheck> checks = check ? checkFrames(document, stop) : std::vector<FrameCheck>();
+    std::vector<FrameCheck> checks;
+    if (check) {
+        Tracer tracer;
+        checks = checkFrames(document, tracer, stop);
+    }
     if (!writeCameraPath.empty())
         writeFileAtomically(writeCameraPath,
                             formatCameraPath(cameraPathOf(*scene, document.cameraIndex(), document.render().fps),

@@ -55,6 +55,15 @@ std::pair<uint64_t, uint64_t> parseSamples(const std::string& text, const std::s
     return {static_cast<uint64_t>(begin), static_cast<uint64_t>(end)};
 }
 
+int64_t parseWarmUp(const std::string& text, const FrameRange& frames) {
+    if (text.empty()) return 0;
+    const int64_t warmUp = parseWhole(text, "--warm-up", "a number of frames", 0);
+    if (warmUp > frames.begin)
+        throwUsage({"there are not so many frames before the first", "--warm-up",
+                    "at most " + std::to_string(frames.begin), std::to_string(warmUp)});
+    return warmUp;
+}
+
 std::vector<std::string> splitList(const std::string& text) {
     std::vector<std::string> parts;
     for (size_t begin = 0; !text.empty() && begin <= text.size();) {

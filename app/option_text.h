@@ -17,6 +17,8 @@ struct SharedText {
 Extent2 parseSize(const std::string& text, const std::string& option);
 /// N (frames 0..N-1) or A..B.
 FrameRange parseFrames(const std::string& text);
+/// A number of frames, none of an empty text, all of which come after frame 0.
+int64_t parseWarmUp(const std::string& text, const FrameRange& frames);
 /// A whole number that is at least `least`.
 int64_t parseWhole(const std::string& text, const std::string& option, const char* expected, int64_t least);
 /// A..B, half-open, both multiples of 16.

@@ -110,13 +110,13 @@ public:
         start(document, file, instance, {options_.scene.scene, scene->contentDigest});
 
         const FrameRange& range = options_.frames;
-        const double fps = document.render().fps;
+        const Clock clock{0, 0, document.render().fps};
         const int64_t first = range.begin - options_.warmUp;
         const bool timed = range.end - first > 1 || first > 0;
         const std::optional<CameraPath> path = readCameraPathOf(options_.scene);
         const std::function<Document(int64_t)> documentAt = [&](int64_t number) {
             Document then = document;
-            if (timed) then.setTime(static_cast<float>(static_cast<double>(number) / fps));
+            if (timed) then.setTime(clock.at(number));
             followCameraPath(then, path);
             return then;
         };
@@ -153,7 +153,7 @@ public:
         start(document, file, lastInstance(replay, choice_.view, document.view(choice_.view).module), replay.scene);
         first_ = replay.first, last_ = replay.last;
         for (FrameNumber number = replay.first; number <= replay.last; ++number) {
-            if (const json* values = replay.valuesOf(number)) applyState(document, *values);
+            if (const std::optional<json> values = replay.valuesOf(number)) applyState(document, *values);
             draw(document, number, number == replay.first, number == replay.last ? Fate::Written : Fate::Dropped);
         }
         return finish(replay.last, replay.last + 1);

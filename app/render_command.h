@@ -7,7 +7,7 @@
 #include "image/video.h"
 #include "session/export.h"
 #include "session/frame_engine.h"
-#include "session/state_log.h"
+#include "session/replay.h"
 
 namespace lumi {
 

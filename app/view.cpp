@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/progress_line.h"
 #include "app/view_driver.h"
 #include "app/view_script.h"
 #include "base/parallel.h"
@@ -26,8 +27,15 @@ int runView(const ViewOptions& options) {
     const std::vector<ScriptLine> script = options.script.empty() ? plainShot(options) : readViewScript(options.script);
     std::filesystem::create_directories(options.out);
     ViewDriver driver(options);
-    for (const ScriptLine& line : script) driver.run(line);
-    driver.finish();
+    {
+        const bool shown = !options.quiet && (options.progress == Progress::Always ||
+                                              (options.progress == Progress::Auto && stderrIsTerminal()));
+        const ProgressLine progress(shown, [&] { return driver.progress(); });
+        if (options.frames) driver.runFrames(*options.frames, options.warmUp);
+        else
+            for (const ScriptLine& line : script) driver.run(line);
+        driver.finish();
+    }
     const nlohmann::json report = driver.report();
     if (options.json) {
         std::printf("%s\n", report.dump(1).c_str());

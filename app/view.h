@@ -1,6 +1,8 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 
+#include "app/frame_range.h"
 #include "app/window.h"
 
 namespace lumi {
@@ -11,6 +13,11 @@ struct ViewOptions {
     std::filesystem::path
         script;  ///< input events, one a line (see app/view_script.h); empty: wait for an image, one shot
     std::filesystem::path out;  ///< folder for the PNGs; made if it is missing
+    std::optional<FrameRange> frames;  ///< one PNG of each, named by its number; only without a script
+    int64_t warmUp = 0;                ///< frames to draw before the first of them
+    std::string buffers;  ///< not empty: the picture goes into an EXR beside each PNG, with these layers
+    bool half = false;    ///< colours of the EXR as half
+    Progress progress = Progress::Auto;
     int samples = 16;           ///< without a script: how many samples a pixel the shot waits for
     bool json = false;          ///< prints one JSON value on stdout: files written, frames, UI time
     bool quiet = false;         ///< nothing on stderr but errors

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "image/png.h"
+#include "session/export.h"
 
 namespace lumi {
 
@@ -78,11 +79,14 @@ void ViewDriver::settle() {
 }
 
 void ViewDriver::wait(const ScriptLine& line, const std::function<bool()>& until) {
+    waitUntil(line.command + ' ' + line.rest, line.where, until);
+}
+
+void ViewDriver::waitUntil(const std::string& what, const std::string& where, const std::function<bool()>& until) {
     const Timer timer;
     while (!until()) {
         if (timer.elapsedMs() > kLongestWaitMs)
-            throw Error(ErrorKind::CheckFailed,
-                        {.what = "waited too long for \"" + line.command + ' ' + line.rest + '"', .where = line.where});
+            throw Error(ErrorKind::CheckFailed, {.what = "waited too long for \"" + what + '"', .where = where});
         build();
         std::this_thread::sleep_for(std::chrono::milliseconds(8));
     }
@@ -170,6 +174,8 @@ void ViewDriver::waits(const ScriptLine& line) {
             return state.snapshot && state.document.scene() && state.snapshot->scene &&
                    state.snapshot->scene->scene->path == state.document.scene()->path;
         });
+        if (!options_.buffers.empty())  // refused before anything is drawn for it
+            BufferSelection::parse(options_.buffers, state.module(0), "--buffers");
     } else if (line.command == "wait-shown") {
         wait(line, [&] { return state.snapshot && state.snapshot->revision >= session_.revision(); });
     } else if (line.command == "wait-frames") {
@@ -177,9 +183,20 @@ void ViewDriver::waits(const ScriptLine& line) {
         const auto more = static_cast<FrameNumber>(number(line, 0));
         wait(line,
              [&] { return state.snapshot && (state.snapshot->frame >= from + more || state.snapshot->frame < from); });
+    } else if (line.command == "wait-frame") {
+        const auto wanted = static_cast<FrameNumber>(number(line, 0));
+        wait(line, [&] { return state.snapshot && !state.snapshot->preview && state.snapshot->frame == wanted; });
+    } else if (line.command == "wait-signals") {
+        wait(line, [&] { return session_.signalCheck() && !session_.checkingSignals(); });
     } else if (line.command == "wait-spp") {
         const auto samples = static_cast<uint64_t>(number(line, 0));
-        wait(line, [&] { return state.snapshot && state.snapshot->accumulatedSamples >= samples; });
+        // What does not accumulate has as many samples as its frames.
+        wait(line, [&] {
+            if (!state.snapshot || state.snapshot->preview) return false;
+            const auto perFrame = static_cast<uint64_t>(state.document.number("render.spp", 1));
+            const auto traced = static_cast<uint64_t>(state.snapshot->frame + 1) * perFrame;
+            return std::max(state.snapshot->accumulatedSamples, state.snapshot->accumulatedSamples ? 0 : traced) >= samples;
+        });
     } else {
         wait(line, [&] {
             const std::vector<Message> messages = log_.messages();
@@ -196,10 +213,12 @@ void ViewDriver::shot(const std::string& name) {
     interface_.draw(size_);
     files_.push_back(options_.out / (name + ".png"));
     writePng(files_.back(), framebuffer_->read());
+    if (!options_.buffers.empty() && interface_.state().snapshot) saveBuffers(options_.out / (name + ".exr"));
 }
 
 void ViewDriver::run(const ScriptLine& line) {
     const std::string& c = line.command;
+    say(line.where + "  " + c + ' ' + line.rest);
     if (c == "size") {
         size_ = {static_cast<int>(number(line, 0)), static_cast<int>(number(line, 1))};
         if (size_.empty() || size_.width > 16384 || size_.height > 16384)
@@ -232,10 +251,10 @@ void ViewDriver::run(const ScriptLine& line) {
         build(static_cast<int>(number(line, 0)));
     } else if (c == "shot") {
         settle();
-        shot(line.arguments[0]);
+        shot(line.rest);
     } else if (c == "dump-ui") {
         settle();
-        files_.push_back(options_.out / (line.arguments[0] + ".json"));
+        files_.push_back(options_.out / (line.rest + ".json"));
         writeFileAtomically(files_.back(), interface_.uiMap().json());
     } else {
         waits(line);

@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json_fwd.hpp>
 
 #include "app/view.h"
@@ -19,6 +20,10 @@ public:
     explicit ViewDriver(const ViewOptions& options);
 
     void run(const ScriptLine& line);
+    /// Draws the frames one after the other, time f/fps in frame f, and shoots each as `<scene>.%04d.png`.
+    void runFrames(const FrameRange& range, int64_t warmUp);
+    /// What it is doing, for a line of progress; from any thread.
+    std::string progress() const;
     /// The last events take effect.
     void finish();
     /// {"files", "context", "first_image_s", "ui_frames", "ui_ms": {"median","p99","worst"}, "engine_frames",
@@ -35,6 +40,10 @@ private:
     void keys(const ScriptLine& line);
     void waits(const ScriptLine& line);
     void shot(const std::string& name);
+    void saveBuffers(const std::filesystem::path& path);
+    void waitUntil(const std::string& what, const std::string& where, const std::function<bool()>& until);
+    void waitForFrame(FrameNumber number);
+    void say(std::string what);
     Vec2 centreOf(const ScriptLine& line, const std::string& name);
     void strike(Key key, bool down) { interface_.input().add(KeyChanged{key, down}); }
 
@@ -50,6 +59,8 @@ private:
     Timer sinceStart_;
     double firstImageS_ = -1;
     int frames_ = 0;
+    mutable std::mutex sayMutex_;
+    std::string doing_ = "opening";
     std::vector<std::filesystem::path> files_;
 };
 

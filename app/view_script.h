@@ -16,7 +16,8 @@ namespace lumi {
 ///     set ID VALUE             a parameter, as --set                  pause N            N frames of the window
 ///     wait-load                until the scene shows its first frame  wait-frames N      N more frames of the engine
 ///     wait-spp N               until N samples a pixel                wait-message TEXT  until a message holds it
-///     wait-shown                until the picture shows every change
+///     wait-frame N             until frame N is shown                wait-signals       until the signals are checked
+///     wait-shown               until the picture shows every change
 ///     shot NAME                NAME.png                               dump-ui NAME       NAME.json: where items are
 struct ScriptLine {
     std::string where;  ///< "script.txt:12"

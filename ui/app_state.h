@@ -35,9 +35,10 @@ struct AppState {
     Vec2 hoveredPaneSize{1};
 
     PanelTab tab = PanelTab::View;
-    bool uiHidden = false, panelHidden = false, helpOpen = false, browserOpen = false, messagesOpen = false,
+    bool uiHidden = false, panelHidden = false, helpOpen = false, browserOpen = false, messagesOpen = false, signalsOpen = false,
          bufferPickerWanted = false, modulePickerWanted = false;
     std::string parameterSearch;
+    bool checkScenes = true;  ///< the signals of each scene are checked when it opens
 
     using Bookmarks = std::array<std::optional<Camera>, 9>;
     std::map<std::string, Bookmarks> bookmarksByScene;  ///< by the scene's path

@@ -82,8 +82,8 @@ void closeTopmost(AppState& state) {
         state.uiHidden = false;
     else if (state.pinned)
         state.pinned.reset();
-    else if (state.messagesOpen)
-        state.messagesOpen = false;
+    else if (state.messagesOpen || state.signalsOpen)
+        state.messagesOpen = state.signalsOpen = false;
     else
         state.quit = true;
 }
@@ -148,6 +148,7 @@ void runTimeCommand(AppState& state, UiCommand command) {
             session.stepBack();
             break;
         case UiCommand::Restart:
+            if (state.document.number("time", 0) != 0) state.setOnce("time", 0.0f);
             session.restart();
             break;
         case UiCommand::ReloadScene:
@@ -203,6 +204,15 @@ void runWindowCommand(AppState& state, UiCommand command, int index) {
             break;
         case UiCommand::ToggleMessages:
             state.messagesOpen = !state.messagesOpen;
+            state.signalsOpen = false;
+            break;
+        case UiCommand::ToggleSignals:
+            state.signalsOpen = !state.signalsOpen;
+            state.messagesOpen = false;
+            if (state.signalsOpen && !state.session.signalCheck()) state.session.checkSignals();
+            break;
+        case UiCommand::CheckSignals:
+            state.session.checkSignals();
             break;
         case UiCommand::Help:
             state.helpOpen = !state.helpOpen;

@@ -81,6 +81,7 @@ void Interface::layOut(Extent2 target) {
     const float panel = state_.uiHidden || state_.panelHidden || size.x < px(560)
                             ? 0
                             : std::floor(std::clamp(0.27f * size.x, px(270), px(348)));
+    state_.session.setCheckingScenes(state_.checkScenes);
     state_.session.setInspecting(panel > 0 && state_.tab == PanelTab::View);
     const ImRect picture(ImVec2(0, bar), ImVec2(size.x - panel, size.y - status));
     pictures_ = drawViewport(state_, picture);
@@ -91,6 +92,7 @@ void Interface::layOut(Extent2 target) {
         drawStatusBar(state_, ImRect(ImVec2(0, size.y - status), size));
     }
     drawMessages(state_, picture);
+    drawSignals(state_, picture);
     drawSceneBrowser(state_, ImRect(ImVec2(0, bar), ImVec2(size.x, size.y - status)));
     drawHelp(state_, ImRect(ImVec2(0, 0), size));
     drawToast(state_, picture);
@@ -103,6 +105,7 @@ void Interface::build(Extent2 target, float elapsedSeconds) {
     framesToSettle_ = input_.empty() ? std::max(framesToSettle_ - 1, 0) : kSettlingFrames;
     messagesSeen_ = state_.log.messages().size();
     revisionSeen_ = state_.session.revision();
+    checkSeen_ = state_.session.signalCheck();
     const FrameInput input = input_.applyFrame();
     io.DisplaySize = ImVec2(static_cast<float>(target.width), static_cast<float>(target.height));
     io.DeltaTime = std::max(elapsedSeconds, 1e-4f);
@@ -131,13 +134,15 @@ bool Interface::busy() const {
     const auto held = [](const auto& states) {
         return std::any_of(std::begin(states), std::end(states), [](bool down) { return down; });
     };
-    return framesToSettle_ > 0 || held(io.MouseDown) || held(io.KeysDown) || state_.session.loadStatus().loading;
+    return framesToSettle_ > 0 || held(io.MouseDown) || held(io.KeysDown) || state_.session.loadStatus().loading ||
+           state_.session.checkingSignals() || state_.session.steppingBack();
 }
 
 bool Interface::wantsFrame() const {
     if (!input_.empty() || busy()) return true;
     const auto latest = state_.session.snapshot();
     if (latest && (!state_.snapshot || latest->serial != state_.snapshot->serial)) return true;
+    if (state_.session.signalCheck() != checkSeen_) return true;
     return state_.log.messages().size() != messagesSeen_ || state_.session.revision() != revisionSeen_;
 }
 

@@ -61,6 +61,7 @@ private:
     int framesToSettle_ = 0;  ///< frames still wanted after the last event: hovers, popups, layout
     size_t messagesSeen_ = 0;
     uint64_t revisionSeen_ = 0;
+    std::shared_ptr<const SignalCheck> checkSeen_;
 };
 
 }  // namespace lumi

@@ -26,6 +26,7 @@ enum class Key : int {
     F = 'F',
     H = 'H',
     I = 'I',
+    K = 'K',
     L = 'L',
     M = 'M',
     N = 'N',

@@ -31,6 +31,7 @@ json bookmarksJson(const AppState::Bookmarks& bookmarks) {
 void readInto(AppState& state, const json& root) {
     for (const json& path : root.value("recent", json::array()))
         state.recentScenes.emplace_back(path.get<std::string>());
+    state.checkScenes = root.value("check-scenes", true);
     const json byScene = root.value("bookmarks", json::object());
     for (const auto& [scene, list] : byScene.items())
         for (const auto& [number, camera] : list.items()) {
@@ -69,7 +70,7 @@ void savePreferences(const AppState& state, const std::filesystem::path& path) {
     for (const auto& [scene, list] : state.bookmarksByScene)
         if (const json stored = bookmarksJson(list); !stored.empty()) bookmarks[scene] = stored;
     try {
-        writeFileAtomically(path, json{{"version", 1}, {"recent", recent}, {"bookmarks", bookmarks}}.dump(1));
+        writeFileAtomically(path, json{{"version", 1}, {"recent", recent}, {"bookmarks", bookmarks}, {"check-scenes", state.checkScenes}}.dump(1));
     } catch (const std::exception& error) {
         state.log.warning(error.what());
     }

@@ -64,6 +64,7 @@ constexpr std::array kShortcuts{
     Shortcut{UiCommand::ToggleUi, plain(Key::Tab), 1, false, kWindow, "Hide or show everything but the picture"},
     Shortcut{UiCommand::TogglePanel, plain(Key::N), 1, false, kWindow, "Hide or show the side panel"},
     Shortcut{UiCommand::ToggleMessages, control(Key::M), 1, false, kWindow, "Messages"},
+    Shortcut{UiCommand::ToggleSignals, plain(Key::K), 1, false, kWindow, "Do the signals keep their contract?"},
     Shortcut{UiCommand::Help, plain(Key::F1), 1, false, kWindow, "This page"},
     Shortcut{UiCommand::Help, shift(Key::Slash), 1, false, kWindow, "This page"},
     Shortcut{UiCommand::Close, plain(Key::Escape), 1, false, kWindow, "Close what is open, else quit"},

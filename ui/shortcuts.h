@@ -51,6 +51,8 @@ enum class UiCommand {
     ToggleUi,
     TogglePanel,
     ToggleMessages,
+    ToggleSignals,
+    CheckSignals,
     Help,
     Close,
     Quit

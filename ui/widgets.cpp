@@ -178,10 +178,23 @@ bool section(const char* title, bool openAtFirst) {
     return open;
 }
 
+/// Below the item, or above it at the window's lower edge, so that it covers none of the item's neighbours.
+static void placeTooltip() {
+    const ImRect item(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    const bool wide = item.GetWidth() > px(160), above = item.Max.y > window.y - px(90);
+    const float x = wide ? ImGui::GetIO().MousePos.x : item.GetCenter().x;
+    const float across = x > window.x - px(360) ? 1.0f : 0.0f;
+    const float edge = wide ? x : across > 0 ? item.Max.x : item.Min.x;
+    ImGui::SetNextWindowPos(ImVec2(edge, above ? item.Min.y - px(6) : item.Max.y + px(6)), ImGuiCond_Always,
+                            ImVec2(across, above ? 1.0f : 0.0f));
+}
+
 void tooltip(const std::string& title, const std::string& text, const std::string& chord) {
     if (title.empty() && text.empty()) return;
     if (ImGui::GetCurrentContext()->HoveredIdTimer < 0.35f) return;
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(10), px(8)));
+    placeTooltip();
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(px(340));
     ImGui::TextUnformatted(title.c_str());

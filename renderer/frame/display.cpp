@@ -204,6 +204,7 @@ DisplayInfo convert(const Image& image, const char* channels, const char* defaul
                          image.plane(plan.planes[2]).data, image.channels() == 2};
     const ValueRange range = rangeFor(plan, value, image.extent().area(), settings);
     info.falseColour = plan.style != Style::Tone && plan.style != Style::Range;
+    info.toneMapped = plan.style == Style::Tone;
     info.colourMap = plan.map;
     info.low = range.low, info.high = range.high;
     info.nonFinite = convertRows(image.extent(), out, RowConverter(image, plan, range, settings));

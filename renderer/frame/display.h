@@ -18,7 +18,7 @@ struct DisplaySettings {
         "auto";  ///< "auto" (the buffer's own), "none", "viridis", "turbo", "magma", "signed", "cyclic", "ids", "gray"
     bool autoRange = true;  ///< 1st to 99th percentile of finite values
     float low = 0, high = 1;
-    int channel = -1;  ///< -1 all, 0.. one channel
+    int channel = -1;  ///< -1 all, 0.. one channel; in parameters "all", "1", ...
 
     void describe(ParameterVisitor&);
 };
@@ -26,6 +26,7 @@ struct DisplaySettings {
 /// What convert() did, for the colour bar and the inspector.
 struct DisplayInfo {
     bool falseColour = false;
+    bool toneMapped = false;  ///< exposure and tone curve were applied; else the range was
     std::string colourMap;
     float low = 0, high = 1;
     int64_t nonFinite =

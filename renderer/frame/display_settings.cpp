@@ -51,12 +51,13 @@ void DisplaySettings::describe(ParameterVisitor& v) {
             "high", high,
             {.label = "High", .min = -1e6, .max = 1e6, .help = "Value at the map's upper end", .redo = Redo::Display});
     });
-    v.integer("channel", channel,
-              {.label = "Channel",
-               .min = -1,
-               .max = 3,
-               .help = "One channel of the buffer, counted from 0; -1 shows all",
-               .redo = Redo::Display});
+    int shown = channel + 1;
+    v.choiceIndex("channel", shown,
+                  {.label = "Channel",
+                   .options = {"all", "1", "2", "3", "4"},
+                   .help = "All channels of the buffer, or one of them: 1 is R, X or Y, 2 is G or Y, and so on",
+                   .redo = Redo::Display});
+    channel = shown - 1;
 }
 
 }  // namespace lumi

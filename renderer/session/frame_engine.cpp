@@ -6,18 +6,11 @@
 
 #include "base/error.h"
 #include "reconstruct/catalog.h"
+#include "session/frame_pose.h"
 #include "session/view_buffers.h"
 
 namespace lumi {
 namespace {
-
-/// Scene at the document's time, seen from `previousTime`; `fits` (may be null) is taken if it is just that.
-std::shared_ptr<const PosedScene> pose(const Document& document, float previousTime, const PosedScene* earlier,
-                                       const std::shared_ptr<const PosedScene>& fits) {
-    const float time = document.time();
-    if (fits && fits->scene == document.scene() && fits->time == time && fits->previousTime == previousTime) return fits;
-    return poseScene(document.scene(), {time, time, previousTime}, earlier);
-}
 
 /// The worst that the differences between two lists of one module's parameters invalidate; nothing: none differ.
 std::optional<Redo> worstChange(const std::vector<ParameterInfo>& before, const std::vector<ParameterInfo>& now) {
@@ -62,7 +55,8 @@ std::optional<FrameOutput> FrameEngine::advance(const FrameRequest& request, std
         const auto measured = timer.measure("pose");
         const float previousTime = frame.changes.cut ? next.document.time() : previous->document.time();
         next.scene = pose(next.document, previousTime, previous ? previous->scene.get() : nullptr,
-                          current_ ? current_->scene : nullptr);
+                          {current_ ? current_->scene : nullptr, previewed_});
+        previewed_ = nullptr;
     }
     if (!frame.changes.cut) frame.changes = differences(previous->state(), next.state(), *next.scene);
 
@@ -167,13 +161,18 @@ std::shared_ptr<Signals> FrameEngine::freeSignals() {
     return pool_.back();
 }
 
+void FrameEngine::bind(const std::shared_ptr<const PosedScene>& posed) {
+    if (bound_ == posed) return;
+    bound_ = nullptr;  // if building fails, the next frame builds again
+    tracer_.bind(posed);
+    bound_ = posed;
+}
+
 bool FrameEngine::traceSignals(const FrameRequest& request, const CameraPose& previousCamera, bool replaces,
                                Completed& next, StageTimer& timer, std::stop_token stop) {
     if (bound_ != next.scene) {
         const auto measured = timer.measure("build");
-        bound_ = nullptr;  // if building fails, the next frame builds again
-        tracer_.bind(next.scene);
-        bound_ = next.scene;
+        bind(next.scene);
     }
     const FrameSampling asked = sampling(request, next, previousCamera);
     if (replaces && current_->scene == next.scene && current_->camera == next.camera &&

@@ -10,6 +10,7 @@
 #include "reconstruct/module.h"
 #include "session/changes.h"
 #include "session/document.h"
+#include "session/signals_check.h"
 #include "trace/tracer.h"
 
 namespace lumi {
@@ -59,6 +60,13 @@ public:
     /// run it, nor before the first frame after a cut that was asked for.
     bool canRepeat(FrameNumber frame) const;
 
+    /// A coarse picture of what the document shows, for the while that it keeps changing: one sample a pixel at `extent`,
+    /// the raw frame in every module's place. It leaves history and the last completed frame as they are. Nothing if
+    /// it was stopped.
+    std::optional<FrameOutput> preview(const Document& document, Extent2 extent, std::stop_token stop = {});
+    /// checkFrames() with this engine's tracer. Throws Error(Interrupted) when stopped.
+    std::vector<FrameCheck> checkSignals(const Document& document, std::stop_token stop);
+
     /// Rays of the frame being traced, for a progress bar; from any thread.
     TraceCounts tracedSoFar() const { return tracer_.counts(); }
     /// Bytes of tracer, signals and modules.
@@ -94,6 +102,7 @@ private:
     SignalSet wantedSignals(const FrameRequest& request);
     Jitter effectiveJitter(const Document& document);
     FrameSampling sampling(const FrameRequest& request, const Completed& next, const CameraPose& previousCamera);
+    void bind(const std::shared_ptr<const PosedScene>& posed);
     bool traceSignals(const FrameRequest& request, const CameraPose& previousCamera, bool replaces, Completed& next,
                       StageTimer& timer, std::stop_token stop);
     bool runModules(const FrameRequest& request, const Completed& next, const CameraPose& previousCamera, FrameOutput& frame,
@@ -105,6 +114,8 @@ private:
     OnModuleError onError_;
     Tracer tracer_;
     std::shared_ptr<const PosedScene> bound_;
+    std::shared_ptr<const PosedScene> previewed_;  ///< of the last preview
+    std::shared_ptr<Signals> previewSignals_;
     Instances instances_, fresh_;
     std::vector<std::shared_ptr<Signals>> pool_;  ///< those that nobody else holds are used again
     std::optional<Completed> before_, current_;

@@ -44,10 +44,10 @@ void Session::Impl::noteChange(Redo redo) {
 }
 
 void Session::Impl::abandonFrame() {
-    const bool streams = sinceChange.elapsedMs() < kStreamMs;
+    const bool streams = changesStream();
     sinceChange.restart();
     if (!drawing || frameStop.stop_requested()) return;
-    if (guarded && streams && sinceFrameBegan.elapsedMs() < kShortMs) {
+    if (guarded && streams && !previewExtent() && sinceFrameBegan.elapsedMs() < kShortMs) {
         heldBack = true;
         wake.notify_all();
     } else {
@@ -235,9 +235,10 @@ void Session::stepBack() {
     impl_->wake.notify_all();
 }
 
-void Session::restart() {
+void Session::restart(FrameNumber first) {
     std::lock_guard lock(impl_->mutex);
     impl_->restartWanted = true;
+    impl_->restartFrame = first;
     impl_->frameStop.request_stop();
     impl_->wake.notify_all();
 }
@@ -252,20 +253,9 @@ std::shared_ptr<const Snapshot> Session::snapshot() const {
     return impl_->snapshot;
 }
 
-void Session::saveView(int view, const std::filesystem::path& path) {
-    if (!snapshot()) return impl_->log.error(path.string() + ": there is no picture yet");
+std::optional<float> Session::steppingBack() const {
     std::lock_guard lock(impl_->mutex);
-    impl_->saves.push_back({view, path});
-    impl_->wake.notify_all();
-}
-
-std::string Session::stateJson() const {
-    StateLog states;
-    {
-        std::lock_guard lock(impl_->mutex);
-        states = impl_->states;
-    }
-    return states.empty() ? "{}" : states.json(OutputChoice{0, "all", false}.json());
+    return impl_->replayed;
 }
 
 }  // namespace lumi

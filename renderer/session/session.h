@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "image/image.h"
 #include "reconstruct/module.h"
 #include "session/document.h"
+#include "session/signals_check.h"
 #include "trace/tracer.h"
 
 namespace lumi {
@@ -27,7 +29,9 @@ struct PaneSnapshot {
 struct Snapshot {
     FrameNumber frame = -1;
     uint64_t serial = 0;          ///< grows with each publication
-    uint64_t revision = 0;        ///< of the document that it shows: Session::revision() then
+    uint64_t revision = 0;        ///< of the document that the last whole frame shows: Session::revision() then
+    bool preview = false;         ///< coarse, while changes keep coming: pictures alone, neither results nor signals
+    Extent2 traced;               ///< pixels that were traced: `extent`, or fewer in a preview
     float time = 0;
     uint64_t accumulatedSamples = 0;  ///< per pixel, of the progressive mean; 0 if no module accumulates
     uint64_t targetSamples = 0;   ///< where the progressive mean stops and the engine rests; 0: never
@@ -40,6 +44,7 @@ struct Snapshot {
     std::vector<PaneSnapshot> panes;
     std::vector<std::pair<std::string, double>> stagesMs;
     double frameMs = 0;
+    double framesPerSecond = 0;   ///< that were completed one after the other until this one; 0: it is the first
     TraceCounts rays;             ///< of this frame
     double raysPerSecond = 0;
 };
@@ -63,6 +68,14 @@ struct LoadStatus {
     bool loading = false;
     float fraction = 0;
     std::string step, path;
+};
+
+/// What the signals' contract made of the present scene.
+struct SignalCheck {
+    std::vector<FrameCheck> frames;
+    std::string failure;  ///< why it could not be checked; empty: it was
+    int brokenRules() const;
+    bool holds() const { return failure.empty() && brokenRules() == 0; }
 };
 
 /// The running engine: a render thread that owns the modules and draws frame after frame of one Document. All public
@@ -105,7 +118,9 @@ public:
     bool playing() const;
     void step();                  ///< one frame, then pause
     void stepBack();              ///< draws the previous frame again, bit for bit, then pause
-    void restart();               ///< frame 0, history forgotten
+    void restart(FrameNumber first = 0);  ///< begins at that frame, history forgotten
+    /// How far a step back that draws earlier frames again has come, 0 to 1; nothing while none is under way.
+    std::optional<float> steppingBack() const;
 
     /// Frames that were begun and given up because something changed.
     uint64_t abandonedFrames() const;
@@ -119,9 +134,17 @@ public:
     /// All buffers present in the snapshot at a pixel.
     std::vector<PixelValue> inspect(const Snapshot& snapshot, Pixel pixel) const;
 
-    /// Writes the view's picture (.png: as shown; .exr: linear with all buffers as layers), state embedded. Runs in the
-    /// background; success and failure arrive in the log.
-    void saveView(int view, const std::filesystem::path& path);
+    /// Writes the view's picture (.png: as shown; .exr: linear with the buffers as layers, colours as half if asked for),
+    /// state embedded. Runs in the background; success and failure arrive in the log.
+    void saveView(int view, const std::filesystem::path& path, const std::string& buffers = "all", bool half = false);
+    /// Checks the signals of each scene after its first frames.
+    void setCheckingScenes(bool on);
+    /// Checks the signals of the document as it is, when nothing else is to be done.
+    void checkSignals();
+    bool checkingSignals() const;
+    /// Of the present scene; null before it was checked.
+    std::shared_ptr<const SignalCheck> signalCheck() const;
+
     /// The log from which `render --replay` makes the present frame again.
     std::string stateJson() const;
 

@@ -24,14 +24,16 @@ struct Session::Impl {
     ~Impl();
 
     struct Save {
-        int view = 0;
         std::filesystem::path path;
+        OutputChoice choice;
     };
     /// What the render thread does next.
     struct Work {
-        enum Kind { Frame, Redraw, Display, StepBack, SaveView } kind = Frame;
+        enum Kind { Frame, Redraw, Display, Preview, StepBack, SaveView, Check } kind = Frame;
         std::shared_ptr<const Document> document;
         bool cut = false;
+        FrameNumber firstFrame = 0;  ///< after a cut
+        Extent2 coarse;              ///< of a preview
         std::optional<Redo> redo;  ///< what the changes that it takes up invalidate
         int stepsBack = 0;
         bool inspecting = false;  ///< every buffer is wanted
@@ -55,6 +57,9 @@ struct Session::Impl {
     void replaceDocument(const Document& next);
     void abandonFrame();
     void watch(std::stop_token quit);
+    bool changesStream() const { return sinceChange.elapsedMs() < kStreamMs; }
+    std::optional<Extent2> previewExtent() const;
+    bool waitsForStream() const;
 
     // session_load.cpp
     void startLoading(const Origin& origin);
@@ -67,14 +72,24 @@ struct Session::Impl {
     void loop(std::stop_token quit);
     bool hasWork() const;
     Work takeWork();
+    bool takeAside(Work& work);
+    void advanceTime(const Work& work);
     void perform(const Work& work);
     void drawFrame(const Work& work);
+    void drawPreview(const Work& work);
+    void checkSignals(const Work& work);
+    void learnCost(double ms, double pixelSamples);
     void stepBack(const Work& work);
     void giveUp(const Work& work);
     void saveView(const Work& work);
     void finishSaves();
     void complete(FrameOutput frame, const Work& work);
+    void adoptSteppedBack(const Work& work);
+
+    // session_publish.cpp
     void publish();
+    void publishPreview(const FrameOutput& coarse, const Work& work);
+    double measuredRate();
 
     MessageLog& log;
     mutable std::mutex mutex;
@@ -88,7 +103,11 @@ struct Session::Impl {
     bool rendering = true, playing = false, timeEdited = false;
     bool inspecting = false;  ///< frames have every buffer
     bool stepWanted = false, restartWanted = false;
+    FrameNumber restartFrame = 0;
     int stepsBack = 0;
+    std::optional<float> replayed;  ///< how far a step back has come
+    bool checkingScenes = false, checkWanted = false, checking = false;
+    std::shared_ptr<const SignalCheck> signalCheck;
     std::deque<Save> saves;
     bool resting = false;    ///< the shown frame has converged
     bool frameFailed = false;  ///< drawing failed: wait for a change
@@ -98,6 +117,9 @@ struct Session::Impl {
     bool heldBack = false;  ///< a change came in a stream of changes: see kStreamMs
     bool guarded = false;  ///< the frame before was abandoned
     Timer sinceFrameBegan, sinceChange;
+    double msPerSample = 0;          ///< of one sample of one pixel, as last measured; 0: not yet
+    uint64_t previewedRevision = 0;  ///< of the document that the last preview showed
+    std::optional<Clock> clock;      ///< by which time goes on while it plays
     uint64_t abandoned = 0;
     std::shared_ptr<const Snapshot> snapshot;
     LoadStatus loading;
@@ -116,6 +138,9 @@ struct Session::Impl {
     std::shared_ptr<const Document> shownDocument;
     uint64_t serial = 0;
     uint64_t shownRevision = 0;
+    Timer sinceStart;
+    std::deque<double> completedMs;  ///< when the last frames were complete, one after the other
+    double shownRate = 0;            ///< frames a second, when the shown one was complete
 
     // Loaders and writers; each says when it is done.
     struct Aside {
@@ -130,6 +155,12 @@ struct Session::Impl {
     /// may finish if it takes less than kShortMs, else nothing would ever be seen. Any other frame is given up at once,
     /// and such a one as soon as the changes pause.
     static constexpr double kStreamMs = 120, kShortMs = 1000;
+    /// Frames that take longer than kSmoothMs have a coarse preview of about kPreviewMs in their place while changes
+    /// keep coming; a side of it is at least 1/kCoarsest of theirs.
+    static constexpr double kSmoothMs = 150, kPreviewMs = 70;
+    static constexpr double kCoarsest = 8;
+    /// A check of the signals waits until nothing changed for so long.
+    static constexpr double kQuietMs = 600;
 };
 
 }  // namespace lumi

@@ -129,7 +129,11 @@ void Session::Impl::load(const Origin& wanted, uint64_t generation, std::stop_to
     history.clear();
     states = StateLog({referenceName(wanted.path), document->loadedScene()->contentDigest});
     restartWanted = true;
+    restartFrame = 0;
     guarded = false;
+    signalCheck = nullptr;
+    checkWanted = checkingScenes;
+    msPerSample = 0;
     noteChange(Redo::Build);
 }
 

@@ -3,28 +3,15 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/error.h"
-#include "base/files.h"
 #include "base/parallel.h"
-#include "session/changes.h"
 #include "session/session_impl.h"
-#include "session/view_buffers.h"
 
 namespace lumi {
-namespace {
-
-std::string paneLabel(const FrameOutput& frame, const ViewSettings& view) {
-    std::string label = view.module;
-    if (view.buffer != "image") label += " " + view.buffer;
-    const auto convergence = frame.convergence.find(view.module);
-    uint64_t samples = static_cast<uint64_t>(frame.signals->samplesPerPixel());
-    if (convergence != frame.convergence.end() && convergence->second.samples > 0) samples = convergence->second.samples;
-    return label + fmt::format(", {} spp, equal samples", samples);
-}
-
-}  // namespace
 
 void Session::Impl::loop(std::stop_token quit) {
     flushDenormals();
@@ -33,7 +20,10 @@ void Session::Impl::loop(std::stop_token quit) {
         Work work;
         {
             std::unique_lock lock(mutex);
-            wake.wait(lock, quit, [this] { return hasWork(); });
+            while (!quit.stop_requested() && !hasWork()) {
+                if (waitsForStream()) wake.wait_for(lock, quit, std::chrono::milliseconds(10), [] { return false; });
+                else wake.wait(lock, quit, [this] { return hasWork() || waitsForStream(); });
+            }
             if (quit.stop_requested()) break;
             work = takeWork();
         }
@@ -45,15 +35,90 @@ void Session::Impl::loop(std::stop_token quit) {
             frameFailed = true;
         }
         std::lock_guard lock(mutex);
-        drawing = steppingBack = false;
+        drawing = steppingBack = checking = false;
+        replayed.reset();
     }
     finishSaves();
 }
 
 bool Session::Impl::hasWork() const {
     if (!document) return false;
-    if (pending || stepWanted || stepsBack > 0 || restartWanted || !saves.empty()) return true;
+    if (stepWanted || stepsBack > 0 || restartWanted) return true;
+    if (pending) return !waitsForStream();
+    if (!saves.empty()) return true;
+    if (checkWanted && shownDocument && sinceChange.elapsedMs() >= kQuietMs) return true;
     return rendering && !frameFailed && (!resting || playing);
+}
+
+/// Nothing to do before changes pause, or before nothing changed for a while.
+bool Session::Impl::waitsForStream() const {
+    if (!document) return false;
+    if (!pending) return checkWanted && shownDocument && sinceChange.elapsedMs() < kQuietMs;
+    return *pending >= Redo::Samples && previewedRevision == revision && changesStream();
+}
+
+/// The size of a preview that is quickly drawn, where a frame of the document is not.
+std::optional<Extent2> Session::Impl::previewExtent() const {
+    if (!document || !shownDocument || msPerSample <= 0) return std::nullopt;
+    const RenderSettings& render = document->render();
+    const double pixels = static_cast<double>(render.width) * render.height;
+    if (msPerSample * pixels * render.samplesPerPixel < kSmoothMs) return std::nullopt;
+    const double scale = std::clamp(std::sqrt(kPreviewMs / (msPerSample * pixels)), 1 / kCoarsest, 1.0);
+    const auto side = [&](int full) { return std::max(1, static_cast<int>(std::lround(full * scale))); };
+    return Extent2{side(render.width), side(render.height)};
+}
+
+/// Work that draws no new frame of the sequence: earlier ones again, a preview, a file, a check. False if there is none.
+bool Session::Impl::takeAside(Work& work) {
+    if (restartWanted) return false;
+    if (stepsBack > 0) {
+        work.kind = Work::StepBack;
+        work.stepsBack = std::exchange(stepsBack, 0);
+        work.document = std::make_shared<Document>(*document);
+        work.revision = revision;
+        work.states = states;
+        drawing = steppingBack = true;
+        heldBack = guarded = false;
+        clock.reset();
+        return true;
+    }
+    const bool streams = pending && *pending >= Redo::Samples && !stepWanted && changesStream();
+    if (const std::optional<Extent2> coarse = streams ? previewExtent() : std::nullopt; coarse) {
+        work.kind = Work::Preview;
+        work.coarse = *coarse;
+        work.document = std::make_shared<Document>(*document);
+        work.revision = previewedRevision = revision;
+        return true;
+    }
+    if (pending || !shownDocument) return false;
+    if (!saves.empty()) {
+        work.kind = Work::SaveView;
+        work.save = saves.front();
+        work.states = states;
+        saves.pop_front();
+        return true;
+    }
+    if (checkWanted && !stepWanted && sinceChange.elapsedMs() >= kQuietMs) {
+        work.kind = Work::Check;
+        work.document = std::make_shared<Document>(*document);
+        checkWanted = false;
+        drawing = checking = true;
+        guarded = false;
+        return true;
+    }
+    return false;
+}
+
+/// The document's time for the frame that `work` draws, where time goes on.
+void Session::Impl::advanceTime(const Work& work) {
+    const bool goesOn = playing && (rendering || stepWanted) && !timeEdited && !work.cut;
+    if (!goesOn || !shownDocument) return clock.reset();
+    const float fps = document->render().fps;
+    // From the first frame on, where that gives the present time too, else from the present frame on.
+    if (!clock || pending) clock = Clock{0, 0, fps};
+    if (clock->at(shown.number) != shownDocument->time()) clock = Clock{shown.number, shownDocument->time(), fps};
+    document->setTime(clock->at(shown.number + 1));
+    ++revision;
 }
 
 Session::Impl::Work Session::Impl::takeWork() {
@@ -62,35 +127,15 @@ Session::Impl::Work Session::Impl::takeWork() {
     work.stop = frameStop.get_token();
     work.inspecting = inspecting;
     work.sceneNumber = sceneNumber;
+    if (takeAside(work)) return work;
     const bool idle = (!rendering || resting) && !stepWanted;
     const Redo redo = pending.value_or(Redo::Display);
-    if (restartWanted) {
-        work.cut = true;
-    } else if (stepsBack > 0) {
-        work.kind = Work::StepBack;
-        work.stepsBack = std::exchange(stepsBack, 0);
-        work.revision = revision;
-        work.states = states;
-        drawing = steppingBack = true;
-        heldBack = guarded = false;
-        return work;
-    } else if (shownDocument && pending && redo == Redo::Display) {
-        work.kind = Work::Display;
-    } else if (shownDocument && pending && redo == Redo::Filter && idle) {
-        work.kind = Work::Redraw;
-    } else if (!pending && !saves.empty() && shownDocument) {
-        work.kind = Work::SaveView;
-        work.save = saves.front();
-        work.states = states;
-        saves.pop_front();
-        return work;
-    }
+    work.cut = restartWanted;
+    work.firstFrame = restartFrame;
+    if (!work.cut && shownDocument && pending && redo == Redo::Display) work.kind = Work::Display;
+    else if (!work.cut && shownDocument && pending && redo == Redo::Filter && idle) work.kind = Work::Redraw;
     const bool newFrame = work.kind == Work::Frame;
-    const bool timeGoesOn = playing && (rendering || stepWanted) && !timeEdited && !work.cut;
-    if (newFrame && timeGoesOn && shownDocument) {
-        document->setTime(shownDocument->time() + 1 / document->render().fps);
-        ++revision;
-    }
+    if (newFrame) advanceTime(work);
     restartWanted = restartWanted && !newFrame;
     stepWanted = stepWanted && !newFrame;
     work.redo = std::exchange(pending, std::nullopt);
@@ -112,6 +157,8 @@ void Session::Impl::perform(const Work& work) {
         case Work::Redraw: drawFrame(work); break;
         case Work::StepBack: stepBack(work); break;
         case Work::SaveView: saveView(work); break;
+        case Work::Preview: drawPreview(work); break;
+        case Work::Check: checkSignals(work); break;
         case Work::Display:
             shownDocument = work.document;
             shownRevision = work.revision;
@@ -127,7 +174,9 @@ void Session::Impl::perform(const Work& work) {
 
 void Session::Impl::drawFrame(const Work& work) {
     const bool first = work.cut || shown.number < 0;
-    const FrameNumber number = first ? 0 : work.kind == Work::Redraw ? shown.number : shown.number + 1;
+    const FrameNumber number = first                          ? work.firstFrame
+                               : work.kind == Work::Redraw ? shown.number
+                                                           : shown.number + 1;
     FrameRequest request{*work.document, number, first, {}, {}};
     if (work.inspecting)
         for (const std::string& instance : work.document->activeInstances()) {
@@ -135,13 +184,48 @@ void Session::Impl::drawFrame(const Work& work) {
             request.signals |= all.signals;
             request.taps[instance] = all.taps;
         }
+    Timer timer;
     std::optional<FrameOutput> frame = engine.advance(request, work.stop);
     if (frame) return complete(std::move(*frame), work);
+    const auto traced = static_cast<double>(engine.tracedSoFar().cameraRays);
     std::lock_guard lock(mutex);
     guarded = true;
+    // A frame that hardly began says little.
+    if (timer.elapsedMs() > kPreviewMs && traced > 1000) learnCost(timer.elapsedMs(), traced);
     // What this frame was to show has not been seen; the next takes it up.
+    restartFrame = work.cut ? work.firstFrame : restartFrame;
     restartWanted = restartWanted || work.cut;
     giveUp(work);
+}
+
+/// Takes up what a frame, or a part of one, cost; the caller holds the lock.
+void Session::Impl::learnCost(double ms, double pixelSamples) { msPerSample = ms / std::max(pixelSamples, 1.0); }
+
+void Session::Impl::drawPreview(const Work& work) {
+    const std::optional<FrameOutput> coarse = engine.preview(*work.document, work.coarse, work.stop);
+    if (!coarse) return;
+    {
+        std::lock_guard lock(mutex);
+        if (work.sceneNumber != sceneNumber) return;
+        learnCost(coarse->stagesMs.front().second, static_cast<double>(work.coarse.area()));
+    }
+    publishPreview(*coarse, work);
+}
+
+void Session::Impl::checkSignals(const Work& work) {
+    auto result = std::make_shared<SignalCheck>();
+    try {
+        result->frames = engine.checkSignals(*work.document, work.stop);
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::Interrupted) {
+            std::lock_guard lock(mutex);
+            checkWanted = checkWanted || work.sceneNumber == sceneNumber;  // something changed: when it is quiet again
+            return;
+        }
+        result->failure = error.what();
+    }
+    std::lock_guard lock(mutex);
+    if (work.sceneNumber == sceneNumber) signalCheck = std::move(result);
 }
 
 /// A frame of `work` was stopped; the caller holds the lock.
@@ -160,129 +244,16 @@ void Session::Impl::complete(FrameOutput frame, const Work& work) {
         shownDocument = work.document;
         shownRevision = work.revision;
         states.record(shown, shownDocument);
+        if (resting || !rendering) completedMs.clear();
+        shownRate = measuredRate();
         resting = shown.rests();
         guarded = false;
+        double tracedMs = 0, builtMs = 0;
+        for (const auto& [stage, ms] : shown.stagesMs) (stage == "build" || stage == "pose" ? builtMs : tracedMs) += ms;
+        const int samples = shown.signals->samplesPerPixel();
+        if (work.kind == Work::Frame) learnCost(tracedMs, static_cast<double>(shown.camera.extent.area()) * samples);
     }
     publish();
-}
-
-void Session::Impl::stepBack(const Work& work) {
-    const StateLog& replayed = work.states;
-    if (replayed.size() < 2) return log.info("There is no earlier frame.");
-    const size_t target = replayed.size() - 1 - std::min<size_t>(replayed.size() - 1, static_cast<size_t>(work.stepsBack));
-    const size_t start = replayed.startOf(target);
-    std::optional<FrameOutput> frame;
-    size_t reached = start;
-    for (size_t i = start; i <= target; ++i) {
-        const StateLog::Entry& entry = replayed.entry(i);
-        std::optional<FrameOutput> next = engine.advance({*entry.document, entry.frame, i == start, {}, {}}, work.stop);
-        if (!next) break;
-        next->changes.cut = entry.cut;  // the log keeps what was, not that a replay begins with a cut
-        next->historyDropped = entry.historyDropped;
-        frame = std::move(next);
-        reached = i;
-    }
-    std::lock_guard lock(mutex);
-    if (work.sceneNumber != sceneNumber) return;
-    if (frame) {
-        states.truncate(reached + 1);
-        shown = std::move(*frame);
-        shownDocument = replayed.entry(reached).document;
-        resting = shown.rests();
-    }
-    if (!frame || reached < target) giveUp(work);
-    if (revision == work.revision) {
-        if (frame) document = *shownDocument;
-        ++revision;
-        pending = std::max(pending, std::optional(Redo::Display));
-    } else if (frame) {
-        // Edits that came meanwhile stay; the frame takes them up.
-        pending = std::max(pending, std::optional(worstDifference(*shownDocument, *document)));
-    }
-}
-
-void Session::Impl::saveView(const Work& work) {
-    const Save& save = work.save;
-    if (work.states.empty()) return log.error(save.path.string() + ": the scene that it was to show is gone");
-    if (!shown.results.count(shownDocument->view(save.view).module))
-        return log.error(save.path.string() + ": this view is not drawn at present");
-    const OutputChoice choice{save.view, "all", false};
-    const std::string instance = shownDocument->view(save.view).module;
-    FrameRequest request{*shownDocument, shown.number, false, {}, {}};
-    std::shared_ptr<const FrameOutput> frame;
-    if (lowerExtension(save.path) == ".exr") {
-        // The same frame once more, with every buffer.
-        if (!engine.canRepeat(shown.number)) return log.error(save.path.string() + ": not saved, its frame was given up");
-        const BufferSelection all = BufferSelection::all(instance);
-        request.signals = all.signals;
-        request.taps[instance] = all.taps;
-        std::optional<FrameOutput> full = engine.advance(request);
-        if (full) frame = std::make_shared<FrameOutput>(std::move(*full));
-    } else {
-        frame = std::make_shared<FrameOutput>(shown);
-    }
-    runAside([this, save, choice, frame, states = work.states, from = shownDocument](std::stop_token) {
-        try {
-            exportView(save.path, *frame, *from, choice, states.json(choice.json()));
-            log.info("Saved " + save.path.string());
-        } catch (const std::exception& error) {
-            log.error(error.what());
-        }
-    });
-}
-
-/// What was asked to be saved before the end.
-void Session::Impl::finishSaves() {
-    Work work;
-    {
-        std::lock_guard lock(mutex);
-        if (shownDocument) work.states = states;
-    }
-    for (const Save& save : saves) {
-        work.save = save;
-        try {
-            saveView(work);
-        } catch (const std::exception& error) {
-            log.error(error.what());
-        }
-    }
-}
-
-void Session::Impl::publish() {
-    Timer timer;
-    auto next = std::make_shared<Snapshot>();
-    next->frame = shown.number;
-    next->serial = ++serial;
-    next->revision = shownRevision;
-    next->time = shown.time;
-    next->extent = shown.camera.extent;
-    next->camera = shown.camera;
-    next->scene = shown.scene;
-    next->signals = shown.signals;
-    next->results = shown.results;
-    next->taps = shown.taps;
-    const int count = shownDocument->layout() == Layout::Single ? 1 : kViewCount;
-    for (int i = 0; i < count; ++i) {
-        const ViewSettings& view = shownDocument->view(i);
-        PaneSnapshot& pane = next->panes.emplace_back();
-        pane.module = view.module;
-        pane.buffer = view.buffer;
-        pane.label = paneLabel(shown, view);
-        pane.pixels = drawView(shown, view, pane.info);
-    }
-    for (const auto& [name, convergence] : shown.convergence) {
-        if (convergence.samples == 0 || next->accumulatedSamples > 0) continue;
-        next->accumulatedSamples = convergence.samples;
-        next->targetSamples = convergence.target;
-    }
-    next->stagesMs = shown.stagesMs;
-    next->stagesMs.emplace_back("display", timer.elapsedMs());
-    next->frameMs = shown.frameMs + timer.elapsedMs();
-    next->rays = shown.rays;
-    for (const auto& [stage, ms] : shown.stagesMs)
-        if (stage == "trace" && ms > 0) next->raysPerSecond = static_cast<double>(shown.rays.total()) / ms * 1000;
-    std::lock_guard lock(mutex);
-    snapshot = std::move(next);
 }
 
 }  // namespace lumi

@@ -1,5 +1,5 @@
 #include "reconstruct/catalog.h"
-#include "session/session.h"
+#include "session/session_impl.h"
 #include "session/view_buffers.h"
 
 namespace lumi {
@@ -77,6 +77,50 @@ std::vector<PixelValue> Session::inspect(const Snapshot& snapshot, Pixel pixel) 
         for (int c = 0; c < ids.channels(); ++c) value.ids.push_back(ids.at(c, pixel.x, pixel.y));
     }
     return values;
+}
+
+void Session::saveView(int view, const std::filesystem::path& path, const std::string& buffers, bool half) {
+    if (!snapshot()) return impl_->log.error(path.string() + ": there is no picture yet");
+    std::lock_guard lock(impl_->mutex);
+    impl_->saves.push_back({path, {view, buffers, half}});
+    impl_->wake.notify_all();
+}
+
+int SignalCheck::brokenRules() const {
+    int broken = 0;
+    for (const FrameCheck& frame : frames)
+        for (const ContractFinding& finding : frame.findings) broken += !finding.holds();
+    return broken;
+}
+
+void Session::setCheckingScenes(bool on) {
+    std::lock_guard lock(impl_->mutex);
+    impl_->checkingScenes = on;
+}
+
+void Session::checkSignals() {
+    std::lock_guard lock(impl_->mutex);
+    impl_->checkWanted = impl_->document.has_value();
+    impl_->wake.notify_all();
+}
+
+bool Session::checkingSignals() const {
+    std::lock_guard lock(impl_->mutex);
+    return impl_->checkWanted || impl_->checking;
+}
+
+std::shared_ptr<const SignalCheck> Session::signalCheck() const {
+    std::lock_guard lock(impl_->mutex);
+    return impl_->signalCheck;
+}
+
+std::string Session::stateJson() const {
+    StateLog states;
+    {
+        std::lock_guard lock(impl_->mutex);
+        states = impl_->states;
+    }
+    return states.empty() ? "{}" : states.json(OutputChoice{0, "all", false}.json());
 }
 
 }  // namespace lumi

@@ -1,12 +1,9 @@
 #include "session/state_log.h"
 
 #include <algorithm>
+#include <cassert>
 
-#include "base/error.h"
-#include "base/files.h"
 #include "base/isa.h"
-#include "image/exr.h"
-#include "image/png.h"
 
 namespace lumi {
 using nlohmann::json;
@@ -17,15 +14,6 @@ constexpr int kVersion = 1;
 /// Frames that can be stepped back to, unless the present one needs more.
 constexpr size_t kKeptEntries = 4096;
 
-const json& member(const json& object, const char* key, json::value_t type, const std::string& where) {
-    const auto found = object.find(key);
-    if (found == object.end()) throwBadInput({std::string("the embedded state lacks \"") + key + '"', where, "", ""});
-    const bool number = type == json::value_t::number_integer && found->is_number_integer();
-    if (found->type() != type && !number)
-        throwBadInput({std::string("the embedded state's \"") + key + "\" has the wrong type", where, "", found->dump()});
-    return *found;
-}
-
 /// Values as they stand in a state: with the content of a sky's file, where one was read. `whole`: all that differs
 /// from the scene, else what differs from the frame before.
 json stateValues(json values, const Document& document, bool whole) {
@@ -34,118 +22,153 @@ json stateValues(json values, const Document& document, bool whole) {
     return values;
 }
 
-std::string embeddedState(const std::filesystem::path& file) {
-    const std::string extension = lowerExtension(file);
-    if (extension == ".exr") {
-        ExrLayers layers = readExr(file);
-        return layers.strings[kStateKey];
-    }
-    if (extension == ".png") return readPngTexts(file)[kStateKey];
-    if (extension == ".json") return readTextFile(file);
-    throwBadInput({"holds no state", file.string(), "a .exr, .png or .json that lumiscope wrote", ""});
+/// Clocks by which the document's frame is on time: from the first frame on, from the frame before, from its own.
+std::vector<Clock> clocksOf(const StateLog::Entry& before, const StateLog::Entry& entry) {
+    const float fps = entry.document->render().fps, time = entry.document->time();
+    std::vector<Clock> clocks{{0, 0, fps}, {before.frame, before.document->time(), fps}, {entry.frame, time, fps}};
+    std::erase_if(clocks, [&](const Clock& clock) { return clock.at(entry.frame) != time; });
+    return clocks;
 }
 
 }  // namespace
 
-const json* Replay::valuesOf(FrameNumber frame) const {
-    for (const auto& [number, values] : sets)
-        if (number == frame) return &values;
-    return nullptr;
+size_t StateLog::size() const {
+    return runs_.empty() ? 0 : static_cast<size_t>(runs_.back().number + runs_.back().count - forgotten_);
 }
 
-Replay parseReplay(const std::string& text, const std::string& where) {
-    const json state = json::parse(text, nullptr, false);
-    if (state.is_discarded() || !state.is_object() || state.value("format", json()) != kFormat)
-        throwBadInput({"holds no state of lumiscope", where, "", ""});
-    if (state.value("version", json()) != kVersion)
-        throwBadInput({"the embedded state has another version", where, std::to_string(kVersion),
-                       state.value("version", json()).dump()});
-    Replay replay;
-    const json& scene = member(state, "scene", json::value_t::object, where);
-    replay.scene.name = member(scene, "name", json::value_t::string, where).get<std::string>();
-    replay.scene.digest = member(scene, "digest", json::value_t::string, where).get<std::string>();
-    replay.isa = member(state, "isa", json::value_t::string, where).get<std::string>();
-    const json& start = member(state, "start", json::value_t::object, where);
-    replay.first = member(start, "frame", json::value_t::number_integer, where).get<FrameNumber>();
-    replay.start = member(start, "set", json::value_t::object, where);
-    replay.last = member(state, "frame", json::value_t::number_integer, where).get<FrameNumber>();
-    for (const json& entry : member(state, "frames", json::value_t::array, where)) {
-        if (!entry.is_object()) throwBadInput({"the embedded state's \"frames\" are not objects", where, "", ""});
-        replay.sets.emplace_back(member(entry, "frame", json::value_t::number_integer, where).get<FrameNumber>(),
-                                 member(entry, "set", json::value_t::object, where));
+const StateLog::Run& StateLog::runOf(size_t index) const {
+    assert(index < size());
+    const uint64_t number = index + forgotten_;
+    return *(std::upper_bound(runs_.begin(), runs_.end(), number,
+                              [](uint64_t wanted, const Run& run) { return wanted < run.number; }) - 1);
+}
+
+StateLog::Entry StateLog::entry(size_t index) const {
+    const Run& run = runOf(index);
+    const uint64_t within = index + forgotten_ - run.number;
+    if (within == 0) return run.head;
+    Entry entry{run.head.frame + static_cast<FrameNumber>(within), run.head.document, false, run.restDropped};
+    if (run.moves) {
+        auto document = std::make_shared<Document>(*run.head.document);
+        document->setTime(run.clocks.front().at(entry.frame));
+        entry.document = std::move(document);
     }
-    if (replay.first < 0 || replay.last < replay.first)
-        throwBadInput({"the embedded state's frames are out of order", where, "", ""});
-    replay.output = state.value("output", json::object());
-    return replay;
+    return entry;
 }
 
-std::string stateTextOf(const std::filesystem::path& file) {
-    const std::string text = lowerExtension(file) == ".png" ? readPng(file).texts[kStateKey] : embeddedState(file);
-    if (text.empty()) throwBadInput({"holds no state of lumiscope", file.string(), "", ""});
-    return text;
-}
-
-Replay readReplay(const std::filesystem::path& file) {
-    const std::string text = embeddedState(file);
-    if (text.empty()) throwBadInput({"holds no state of lumiscope", file.string(), "", ""});
-    return parseReplay(text, file.string());
+size_t StateLog::startOf(size_t index) const {
+    const Run& run = runOf(index);
+    const uint64_t number = index + forgotten_;
+    // Where no module keeps history the frame before is run all the same: motion refers to it.
+    const uint64_t start = number > run.number && run.restDropped ? number - 1 : run.start;
+    return static_cast<size_t>(std::max(start, forgotten_) - forgotten_);
 }
 
 void StateLog::record(const FrameOutput& frame, std::shared_ptr<const Document> document) {
-    const Entry entry{frame.number, std::move(document), frame.changes.cut, frame.historyDropped, nullptr, 0};
-    if (!entries_.empty() && entries_.back().frame == frame.number) entries_.back() = entry;
-    else entries_.push_back(entry);
-    describeLast();
+    if (!empty() && runs_.back().lastFrame() == frame.number) dropLast();
+    add({frame.number, std::move(document), frame.changes.cut, frame.historyDropped});
     forgetOldest();
 }
 
 void StateLog::redescribeLast(std::shared_ptr<const Document> document) {
-    if (entries_.empty()) return;
-    entries_.back().document = std::move(document);
-    describeLast();
+    if (empty()) return;
+    Entry entry = last();
+    entry.document = std::move(document);
+    dropLast();
+    add(std::move(entry));
 }
 
 /// Each entry is told once, when it comes: a state of n frames then costs n pieces of text, not n comparisons.
-void StateLog::describeLast() {
-    Entry& last = entries_.back();
-    const uint64_t number = forgotten_ + entries_.size() - 1;
-    last.set = nullptr;
-    last.start = number;
-    if (entries_.size() == 1) return;
-    const Entry& before = entries_[entries_.size() - 2];
-    // Where no module keeps history the frame before is run all the same: motion refers to it.
-    if (!last.cut) last.start = last.historyDropped ? number - 1 : before.start;
-    if (last.document == before.document) return;
-    nlohmann::json set = stateValues(Document::difference(*before.document, *last.document), *last.document, false);
-    if (!set.empty()) last.set = std::make_shared<nlohmann::json>(std::move(set));
+void StateLog::add(Entry entry) {
+    Run run{std::move(entry), forgotten_ + size(), 1, 0, false, false, {}, nullptr};
+    run.start = run.number;
+    if (!empty()) {
+        const Entry before = last();
+        nlohmann::json set = run.head.document == before.document
+                       ? nlohmann::json::object()
+                       : stateValues(Document::difference(*before.document, *run.head.document), *run.head.document, false);
+        if (extend(runs_.back(), before, run.head, set)) return;
+        if (!run.head.cut) run.start = run.head.historyDropped ? run.number - 1 : startOf(size() - 1) + forgotten_;
+        run.clocks = clocksOf(before, run.head);
+        if (!set.empty()) run.set = std::make_shared<nlohmann::json>(std::move(set));
+    } else {
+        run.clocks = clocksOf(run.head, run.head);
+    }
+    runs_.push_back(std::move(run));
 }
 
-size_t StateLog::startOf(size_t index) const {
-    return static_cast<size_t>(std::max(entries_[index].start, forgotten_) - forgotten_);
+/// Takes an entry into the run that ends with `before`, if it goes on like it; `set` is what differs.
+bool StateLog::extend(Run& run, const Entry& before, const Entry& entry, const nlohmann::json& set) {
+    if (entry.cut || entry.frame != before.frame + 1) return false;
+    if (run.count > 1 && entry.historyDropped != run.restDropped) return false;
+    const bool moves = !set.empty();
+    if (run.count > 1 && moves != run.moves) return false;
+    if (moves) {
+        if (set.size() != 1 || !set.contains("time")) return false;
+        std::vector<Clock> clocks = run.clocks;
+        std::erase_if(clocks, [&](const Clock& clock) { return clock.at(entry.frame) != entry.document->time(); });
+        if (clocks.empty()) return false;
+        run.clocks = std::move(clocks);
+    }
+    run.moves = moves;
+    run.restDropped = entry.historyDropped;
+    ++run.count;
+    return true;
+}
+
+void StateLog::dropLast() {
+    if (--runs_.back().count == 0) runs_.pop_back();
+}
+
+void StateLog::truncate(size_t count) {
+    while (size() > count) {
+        Run& run = runs_.back();
+        run.count -= std::min<uint64_t>(run.count, size() - count);
+        if (run.count == 0) runs_.pop_back();
+    }
 }
 
 void StateLog::forgetOldest() {
-    if (entries_.size() <= kKeptEntries) return;
-    const size_t unneeded = std::min(startOf(entries_.size() - 1), entries_.size() - kKeptEntries);
-    entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(unneeded));
-    forgotten_ += unneeded;
+    while (runs_.size() > 1 && size() > kKeptEntries) {
+        const uint64_t oldest = runs_.front().count;
+        if (startOf(size() - 1) < oldest || size() - oldest < kKeptEntries) return;
+        forgotten_ += oldest;
+        runs_.pop_front();
+    }
+}
+
+/// What was done in the frames after entry number `first`, run by run.
+nlohmann::json StateLog::framesFrom(uint64_t first) const {
+    nlohmann::json frames = nlohmann::json::array();
+    for (const Run& run : runs_) {
+        if (run.number + run.count <= first + 1) continue;
+        const bool whole = run.number > first;
+        nlohmann::json told = nlohmann::json::object();
+        if (whole && run.set) told["set"] = *run.set;
+        const FrameNumber from = whole ? run.head.frame : run.head.frame + static_cast<FrameNumber>(first + 1 - run.number);
+        if (run.moves) {
+            const Clock& clock = run.clocks.front();
+            told["last"] = run.lastFrame();
+            told["clock"] = {{"frame", clock.frame}, {"time", clock.time}, {"fps", clock.fps}};
+        }
+        if (told.empty()) continue;
+        told["frame"] = from;
+        frames.push_back(std::move(told));
+    }
+    return frames;
 }
 
 std::string StateLog::json(const nlohmann::json& output) const {
-    const size_t last = entries_.size() - 1, first = startOf(last);
-    nlohmann::json frames = nlohmann::json::array();
-    for (size_t i = first + 1; i <= last; ++i) {
-        if (entries_[i].set) frames.push_back({{"frame", entries_[i].frame}, {"set", *entries_[i].set}});
-    }
-    const nlohmann::json start = stateValues(entries_[first].document->changedValues(), *entries_[first].document, true);
+    const size_t present = size() - 1, first = startOf(present);
+    const Entry begin = entry(first);
+    const nlohmann::json start = stateValues(begin.document->changedValues(), *begin.document, true);
     const nlohmann::json state = {{"format", kFormat},
                                   {"version", kVersion},
                                   {"scene", {{"name", scene_.name}, {"digest", scene_.digest}}},
                                   {"isa", isaName(activeIsa())},
-                                  {"start", {{"frame", entries_[first].frame}, {"set", start}}},
-                                  {"frames", std::move(frames)},
-                                  {"frame", entries_[last].frame},
+                                  {"start", {{"frame", begin.frame}, {"set", start}}},
+                                  {"frames", framesFrom(first + forgotten_)},
+                                  {"frame", entry(present).frame},
                                   {"output", output}};
     return state.dump();
 }

@@ -1,12 +1,12 @@
 #pragma once
 #include <deque>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "session/clock.h"
 #include "session/document.h"
 #include "session/frame_engine.h"
 
@@ -18,39 +18,16 @@ struct SceneReference {
     std::string digest;  ///< Scene::contentDigest
 };
 
-/// Frames to run, one after the other: document values to apply before each.
-struct Replay {
-    SceneReference scene;
-    std::string isa;
-    FrameNumber first = 0, last = 0;
-    nlohmann::json start;                                      ///< values before frame `first`, which is a cut
-    std::vector<std::pair<FrameNumber, nlohmann::json>> sets;  ///< ascending, after `first`
-    nlohmann::json output;                                     ///< what was written: see OutputChoice
-
-    /// Values for frame `frame`; null if there are none.
-    const nlohmann::json* valuesOf(FrameNumber frame) const;
-};
-
-/// The state inside a .exr, .png or .json that lumiscope wrote, all of which is read: a damaged file throws
-/// Error(BadInput), as does one without a state.
-std::string stateTextOf(const std::filesystem::path& file);
-
-/// Reads what StateLog::json() wrote. Throws Error(BadInput) headed by `where`.
-Replay parseReplay(const std::string& text, const std::string& where);
-/// From the state embedded in a .exr or .png, or a .json that holds the state alone.
-Replay readReplay(const std::filesystem::path& file);
-
 /// What was done, frame by frame: enough to draw any of the frames again, bit for bit. The state that goes into files
 /// begins where the frame's history began. It holds no thread count, time of day, host or output path, so the same
-/// work gives the same text anywhere.
+/// work gives the same text anywhere. Frames that differ from the one before in nothing, or in a time that a clock
+/// tells, are kept and told as one run: neither memory nor text grows with them.
 class StateLog {
 public:
     struct Entry {
         FrameNumber frame = -1;
         std::shared_ptr<const Document> document;
         bool cut = false, historyDropped = false;
-        std::shared_ptr<const nlohmann::json> set;  ///< what turns the entry before into this one; null: nothing
-        uint64_t start = 0;                         ///< startOf(), counted from the first entry ever
     };
 
     StateLog() = default;
@@ -60,25 +37,44 @@ public:
     void record(const FrameOutput& frame, std::shared_ptr<const Document> document);
     /// The last frame is shown otherwise: `document` differs from its own in that alone.
     void redescribeLast(std::shared_ptr<const Document> document);
-    bool empty() const { return entries_.empty(); }
-    size_t size() const { return entries_.size(); }
-    const Entry& entry(size_t index) const { return entries_[index]; }
+    bool empty() const { return runs_.empty(); }
+    size_t size() const;
+    Entry entry(size_t index) const;
     /// From which entry on frames have to run to draw entry `index` again.
     size_t startOf(size_t index) const;
     /// Keeps the first `count` entries, or all if there are fewer.
-    void truncate(size_t count) {
-        if (count < entries_.size()) entries_.resize(count);
-    }
+    void truncate(size_t count);
+    /// Pieces that are kept, each one or many frames.
+    size_t runCount() const { return runs_.size(); }
 
     /// The state of the last entry; `output` says what was written.
     std::string json(const nlohmann::json& output = nlohmann::json::object()) const;
 
 private:
-    void describeLast();
+    /// Consecutive frames: the first as told by `document`, the others equal to it or, with clocks, but for the time.
+    struct Run {
+        Entry head;              ///< the first frame
+        uint64_t number = 0;     ///< of its entry, counted from the first entry ever
+        uint64_t count = 1;
+        uint64_t start = 0;      ///< startOf(), counted likewise, of the first
+        bool restDropped = false;  ///< historyDropped of the others
+        bool moves = false;        ///< the others' time is what the clocks tell; else all are equal
+        std::vector<Clock> clocks;  ///< all that agree with every frame of the run
+        std::shared_ptr<const nlohmann::json> set;  ///< what turns the entry before into the first; null: nothing
+
+        FrameNumber lastFrame() const { return head.frame + static_cast<FrameNumber>(count) - 1; }
+    };
+
+    const Run& runOf(size_t index) const;
+    Entry last() const { return entry(size() - 1); }
+    void add(Entry entry);
+    bool extend(Run& run, const Entry& before, const Entry& entry, const nlohmann::json& set);
+    void dropLast();
     void forgetOldest();
+    nlohmann::json framesFrom(uint64_t first) const;
 
     SceneReference scene_;
-    std::deque<Entry> entries_;
+    std::deque<Run> runs_;
     uint64_t forgotten_ = 0;  ///< entries that were there before the present first
 };
 

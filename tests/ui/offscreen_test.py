@@ -21,8 +21,11 @@ def view(name, script, scene="cornell", options=SMALL, code=0):
     out = FOLDER / name
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)
-    (out / "script.txt").write_text(script)
-    run = subprocess.run([PROGRAM, "view", scene, "--offscreen", "--json", "--script", out / "script.txt", "--out", out, *options],
+    played = []
+    if script is not None:
+        (out / "script.txt").write_text(script)
+        played = ["--script", out / "script.txt"]
+    run = subprocess.run([PROGRAM, "view", scene, "--offscreen", "--json", "--out", out, *played, *options],
                          capture_output=True, text=True, timeout=400)
     assert run.returncode == code, f"{name}: exit code {run.returncode}, expected {code}\n{run.stderr}"
     return out, json.loads(run.stdout) if code == 0 else run.stderr
@@ -146,6 +149,111 @@ shot large
     small, large = Picture(out / "small.png"), Picture(out / "large.png")
     assert (small.width, small.height, large.width, large.height) == (640, 480, 3840, 2160)
     assert small.mean((0, 60, 350, 450)) > 3 and large.mean((0, 200, 2800, 2000), 17) > 10, "the picture shows at any size"
+
+
+def test_time_steps_and_buffers():
+    out, report = view("time", """
+wait-load
+wait-shown
+key ctrl+space
+pause 2
+key r
+wait-shown
+key .
+wait-frames 1
+key .
+wait-frames 1
+key tab
+shot second
+key ,
+wait-frame 1
+shot first
+key .
+wait-frames 1
+shot second-again
+key space
+key .
+wait-frames 1
+key .
+wait-frames 1
+dump-ui played
+key ctrl+f12
+wait-message Saved
+key r
+wait-shown
+pause 2
+shot restarted
+""", scene="parade",
+                       options=["--set", "render.width=160", "--set", "render.height=90", "--module", "none", "--set", "render.spp=2"])
+    whole = (40, 40, 1240, 760)
+    first, second, again, restarted = (Picture(out / f"{n}.png") for n in ("first", "second", "second-again", "restarted"))
+    assert difference(first, second, whole) > 1, "each frame has samples of its own"
+    assert difference(second, again, whole) == 0, "a step forward after a step back draws the same frame"
+    assert difference(restarted, second, whole) > 1, "the beginning has other samples"
+    exr = list(out.glob("parade.none.image.*.exr"))
+    assert len(exr) == 1, exr
+    data = exr[0].read_bytes()
+    for layer in (b"albedo.R", b"normal.X", b"motion.X", b"objectId", b"directDiffuse.R", b"lumiscope"):
+        assert layer in data, layer
+    assert report["errors"] == [], report["errors"]
+
+
+def test_frames_are_shot_one_by_one():
+    options = ["--set", "render.width=64", "--set", "render.height=36", "--module", "none", "--fps", "30", "--frames", "2..5",
+               "--warm-up", "1", "--buffers", "depth,normal", "--half"]
+    out, report = view("frames", None, scene="parade", options=options)
+    names = [f"parade.{n:04}.{kind}" for n in (2, 3, 4) for kind in ("png", "exr")]
+    assert [pathlib.Path(f).name for f in report["files"]] == names, report["files"]
+    subprocess.run([PROGRAM, "render", "parade", *options[:8], "--frames", "1..5", "--buffers", "depth,normal", "--half", "--quiet",
+                    "--out", out / "render.%04d.exr"], check=True)
+    for n in (2, 3, 4):
+        shown, rendered = (out / f"parade.{n:04}.exr").read_bytes(), (out / f"render.{n:04}.exr").read_bytes()
+        assert shown[-4096:] == rendered[-4096:], f"frame {n} is that of render"
+    _, text = view("frames-mistake", "wait-load\n", options=["--frames", "3"], code=2)
+    assert "--frames" in text, text
+
+
+def test_channels_are_called_by_their_letters():
+    out, _ = view("channels", """
+wait-load
+wait-spp 4
+click view.0.channel
+dump-ui colours
+click view.0.channel:G
+wait-shown
+key tab
+shot green
+key tab
+key b
+text depth
+key Enter
+wait-shown
+dump-ui depth
+""")
+    names = lambda file: {item["name"] for item in json.loads((out / file).read_text())["items"]}
+    assert {f"view.0.channel:{c}" for c in ("All", "R", "G", "B")} <= names("colours.json")
+    assert "view.0.channel" not in names("depth.json"), "one channel leaves no choice"
+    green = Picture(out / "green.png")
+    assert all(r == g == b for r, g, b in (green.pixel(x, 400) for x in range(100, 1180, 20))), "one channel is grey"
+
+
+def test_the_light_of_the_signals():
+    out, _ = view("signals", """
+wait-load
+wait-spp 4
+click signals
+wait-signals
+shot good
+dump-ui good
+click close-signals
+dump-ui closed
+""")
+    names = lambda file: {item["name"] for item in json.loads((out / file).read_text())["items"]}
+    assert {"signals-drawer", "check-signals", "check-scenes"} <= names("good.json"), names("good.json")
+    assert "signals-drawer" not in names("closed.json")
+    light = [i for i in json.loads((out / "good.json").read_text())["items"] if i["name"] == "signals"][0]
+    r, g, b = Picture(out / "good.png").pixel(round(light["x"] + 10), round(light["y"] + light["height"] / 2))
+    assert g > 150 and r < 140, (r, g, b)
 
 
 def test_flying_changes_the_picture_and_bookmarks_bring_it_back():

@@ -22,6 +22,11 @@ void drawCameras(AppState& state);
 void drawMessages(AppState& state, const ImRect& area);
 void drawToast(AppState& state, const ImRect& area);
 
+/// The light that tells whether the scene's signals keep their contract, right-aligned in `area`; returns its left edge.
+float drawSignalsLight(AppState& state, const ImRect& area);
+/// The drawer with every rule of the contract.
+void drawSignals(AppState& state, const ImRect& area);
+
 void drawHelp(AppState& state, const ImRect& area);
 void drawSceneBrowser(AppState& state, const ImRect& area);
 /// What stands where the picture will be: the welcome page before a scene is open, progress while one loads.

@@ -56,15 +56,22 @@ void drawUiHistory(const UiTiming& timing) {
     list.PathStroke(palette::kAccent, 0, px(1.2f));
 }
 
+std::string snapshotRate(const AppState& state) {
+    const double rate = state.snapshot->framesPerSecond;
+    if (!state.session.rendering()) return "paused";
+    return rate > 0 ? fmt::format("{:.3g} / s", rate) : "-";
+}
+
 }  // namespace
 
 void drawProfilePanel(AppState& state) {
     if (state.snapshot && section("Stages of the last frame")) drawStages(*state.snapshot);
-    if (state.snapshot && section("Rays")) {
+    if (state.snapshot && section("Frames and rays")) {
+        row("Frames", snapshotRate(state));
         row("Speed", fmt::format("{:.2f} Mray/s", state.snapshot->raysPerSecond * 1e-6));
-        row("Frame", fmt::format("{}", state.snapshot->frame));
+        row("Number", fmt::format("{}", state.snapshot->frame));
         row("Samples", fmt::format("{} spp", state.snapshot->accumulatedSamples));
-        row("Size", fmt::format("{} x {}", state.snapshot->extent.width, state.snapshot->extent.height));
+        row("Size", fmt::format("{} x {}", state.snapshot->traced.width, state.snapshot->traced.height));
     }
     if (section("Memory")) {
         row("Resident", formatBytes(residentBytes()));
@@ -76,7 +83,7 @@ void drawProfilePanel(AppState& state) {
         row("UI thread, median", fmt::format("{:.2f} ms", state.timing.median()));
         row("UI thread, p99", fmt::format("{:.2f} ms", state.timing.p99()),
             state.timing.p99() < 8 ? palette::kGood : palette::kWarning);
-        row("Frame rate", fmt::format("{:.0f} / s", static_cast<double>(ImGui::GetIO().Framerate)));
+        row("Redrawn", fmt::format("{:.0f} / s", static_cast<double>(ImGui::GetIO().Framerate)));
         ImGui::PushTextWrapPos(0);
         smallText("CPU time of the UI thread a frame, outside OpenGL; the line is the budget of 8 ms.",
                   palette::kFaint);

@@ -21,12 +21,24 @@ std::string firstLine(const std::string& text) {
     return text.substr(0, text.find('\n'));
 }
 
+/// What a frame took.
+std::string duration(double ms) {
+    return ms < 1000 ? fmt::format("{:.1f} ms a frame", ms) : fmt::format("{:.2f} s a frame", ms * 1e-3);
+}
+
 /// Facts about the picture, right-aligned; as many as fit.
 std::string facts(const AppState& state) {
     if (!state.snapshot) return {};
     const Snapshot& s = *state.snapshot;
-    return fmt::format("{} x {}    {:.0f}%    {:.1f} ms    {:.1f} Mray/s", s.extent.width, s.extent.height,
-                       static_cast<double>(100 * state.view.zoom()), s.frameMs, s.raysPerSecond * 1e-6);
+    const std::string size = fmt::format("{} x {}    {:.0f}%", s.extent.width, s.extent.height,
+                                         static_cast<double>(100 * state.view.zoom()));
+    const std::string cost = fmt::format("{}    {:.1f} Mray/s", duration(s.frameMs), s.raysPerSecond * 1e-6);
+    if (s.preview) return fmt::format("{}    preview {} x {}    {}", size, s.traced.width, s.traced.height, cost);
+    if (!state.session.rendering()) return size + "    paused    " + cost;
+    if (s.targetSamples && s.accumulatedSamples >= s.targetSamples && !state.session.playing())
+        return size + "    done    " + cost;
+    const std::string rate = s.framesPerSecond > 0 ? fmt::format("    {:.3g} frames/s", s.framesPerSecond) : "";
+    return size + rate + "    " + cost;
 }
 
 void drawStatusRow(AppState& state, const ImRect& area) {
@@ -35,10 +47,16 @@ void drawStatusRow(AppState& state, const ImRect& area) {
     const float y = std::floor(area.GetCenter().y - 0.5f * ImGui::GetFontSize());
     const std::string right = facts(state);
     const float rightWidth = ImGui::CalcTextSize(right.c_str()).x;
-    const bool roomForBoth = area.GetWidth() > rightWidth + px(220);
-    if (roomForBoth) list.AddText(ImVec2(area.Max.x - rightWidth - px(14), y), palette::kDim, right.c_str());
+    const bool roomForBoth = area.GetWidth() > rightWidth + px(340);
+    float end = area.Max.x - px(14);
+    if (roomForBoth) {
+        end -= rightWidth;
+        list.AddText(ImVec2(end, y), palette::kDim, right.c_str());
+        end -= px(22);
+    }
+    end = drawSignalsLight(state, ImRect(area.Min, ImVec2(end, area.Max.y))) - px(10);
 
-    const float width = area.GetWidth() - (roomForBoth ? rightWidth + px(40) : 0);
+    const float width = std::max(end - area.Min.x, px(40));
     ImGui::SetCursorScreenPos(area.Min);
     if (ImGui::InvisibleButton("messages", ImVec2(width, area.GetHeight())))
         runCommand(state, UiCommand::ToggleMessages);

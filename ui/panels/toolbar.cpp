@@ -51,6 +51,15 @@ void drawTransport(AppState& state, const ImRect& area) {
 
 /// Samples so far, and the way to the target.
 void drawProgress(AppState& state, const ImRect& area) {
+    if (const std::optional<float> replayed = state.session.steppingBack()) {
+        const ImVec2 corner = ImGui::GetCursorScreenPos();
+        const WithFont small(ui().fonts.small);
+        const char* text = "drawing again";
+        ImGui::GetWindowDrawList()->AddText(ImVec2(corner.x + px(132) - ImGui::CalcTextSize(text).x, area.Min.y + px(9)),
+                                            palette::kDim, text);
+        ImGui::SetCursorScreenPos(ImVec2(corner.x, area.Min.y + px(28)));
+        return progressBar(*replayed, px(132), px(4));
+    }
     if (!state.snapshot || state.snapshot->accumulatedSamples == 0) return;
     const uint64_t samples = state.snapshot->accumulatedSamples, target = state.snapshot->targetSamples;
     const std::string text = target ? fmt::format("{} / {} spp", samples, target) : fmt::format("{} spp", samples);

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <set>
+
 #include "ui/commands.h"
 #include "ui/inspector.h"
 #include "ui/panels/panels.h"
@@ -48,6 +51,41 @@ void drawZoom(AppState& state) {
         runCommand(state, UiCommand::Loupe);
 }
 
+/// The channels by the buffer's own letters; nothing to choose where there is one.
+void drawChannel(AppState& state) {
+    const std::string id = state.viewId(state.activePane, "channel");
+    const ParameterInfo* declared = state.document.find(id);
+    std::string channels;
+    for (const BufferEntry& buffer : state.buffers(state.activePane))
+        if (buffer.name == state.buffer(state.activePane)) channels = buffer.channels;
+    if (!declared || channels.size() < 2) return;
+    ParameterInfo info = *declared;
+    const auto& all = declared->options;
+    const auto chosen = std::find(all.begin(), all.end(), std::get<std::string>(declared->value)) - all.begin();
+    info.options = {"All"};
+    for (const char letter : channels.substr(0, all.size() - 1)) info.options.emplace_back(1, letter);
+    const size_t present = std::min(static_cast<size_t>(chosen), info.options.size() - 1);
+    info.value = info.options[present];
+    const ParameterEdit edit = parameterRow(info, state.document.changed(id));
+    if (edit.reset) state.reset(id);
+    if (!edit.value) return;
+    const auto wanted = std::find(info.options.begin(), info.options.end(), std::get<std::string>(*edit.value));
+    state.setOnce(id, all[static_cast<size_t>(wanted - info.options.begin())]);
+}
+
+/// What the settings say about the present picture: a tone-mapped one has no range, a mapped one no exposure.
+std::set<std::string> withoutEffect(const AppState& state, const std::string& prefix) {
+    std::set<std::string> hidden{prefix + "module", prefix + "buffer", prefix + "channel"};
+    const PaneSnapshot* shown = state.pane(state.activePane);
+    if (!shown || shown->buffer != state.buffer(state.activePane)) return hidden;
+    const bool tone = shown->info.toneMapped;
+    for (const char* name : {"exposure", "tone-curve"})
+        if (!tone) hidden.insert(prefix + name);
+    for (const char* name : {"auto-range", "low", "high"})
+        if (tone) hidden.insert(prefix + name);
+    return hidden;
+}
+
 }  // namespace
 
 void drawViewPanel(AppState& state) {
@@ -56,7 +94,8 @@ void drawViewPanel(AppState& state) {
     if (pickerRow("pick-buffer", "Buffer", state.buffer(state.activePane))) state.bufferPickerWanted = true;
     if (section("Display")) {
         const std::string prefix = state.viewId(state.activePane, "");
-        parameterRows(state, prefix, "", {prefix + "module", prefix + "buffer"});
+        parameterRows(state, prefix, "", withoutEffect(state, prefix));
+        drawChannel(state);
         drawZoom(state);
     }
     if (section("Pixel")) drawInspector(state);

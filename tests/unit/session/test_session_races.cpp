@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "image/exr.h"
-#include "session/state_log.h"
+#include "session/replay.h"
 #include "support/probe_module.h"
 #include "support/session_test.h"
 #include "support/temporary_folder.h"

@@ -1,4 +1,4 @@
-#include "session/state_log.h"
+#include "session/replay.h"
 
 #include "base/files.h"
 #include "base/timer.h"
@@ -31,7 +31,7 @@ FrameOutput replayed(const std::string& state, std::shared_ptr<const Scene> scen
     FrameEngine engine(log);
     std::optional<FrameOutput> output;
     for (FrameNumber frame = replay.first; frame <= replay.last; ++frame) {
-        if (const nlohmann::json* values = replay.valuesOf(frame)) document.apply(*values);
+        if (const auto values = replay.valuesOf(frame)) document.apply(*values);
         output = engine.advance({document, frame, frame == replay.first, {Signal::Motion}, {}});
     }
     return std::move(*output);
@@ -84,6 +84,71 @@ TEST(StateLog, UnchangedFramesTakeNoSpace) {
     const size_t length = recorder.states.json().size();
     for (FrameNumber frame = 2; frame < 9; ++frame) recorder.draw(document, frame);
     EXPECT_EQ(recorder.states.json().size(), length);
+    EXPECT_EQ(recorder.states.runCount(), 1u);
+}
+
+/// Draws one frame after the other as time goes on by the clock.
+void play(Recorder& recorder, Document& document, const Clock& clock, FrameNumber begin, FrameNumber end) {
+    for (FrameNumber frame = begin; frame < end; ++frame) {
+        document.setTime(clock.at(frame));
+        recorder.draw(document, frame);
+    }
+}
+
+TEST(StateLog, TimeThatGoesOnTakesNoSpace) {
+    const auto scene = tinyScene();
+    for (const Clock& clock : {Clock{0, 0, 60}, Clock{0, 0, 24}, Clock{0, 0.3f, 7}}) {
+        Recorder recorder;
+        Document document(scene);
+        document.set("render.fps", clock.fps);
+        document.setTime(clock.at(0));
+        recorder.draw(document, 0);
+        play(recorder, document, clock, 1, 11);
+        const size_t length = recorder.states.json().size();
+        play(recorder, document, clock, 11, 40);
+        EXPECT_EQ(recorder.states.json().size(), length);
+        EXPECT_LE(recorder.states.runCount(), 2u);
+        EXPECT_EQ(recorder.states.size(), 40u);
+        for (FrameNumber frame = 0; frame < 40; ++frame)
+            EXPECT_EQ(recorder.states.entry(static_cast<size_t>(frame)).document->time(), clock.at(frame)) << frame;
+        const Replay replay = parseReplay(recorder.states.json(), "state");
+        Document again(scene);
+        again.apply(replay.start);
+        for (FrameNumber frame = replay.first; frame <= replay.last; ++frame) {
+            if (const auto values = replay.valuesOf(frame)) again.apply(*values);
+            EXPECT_EQ(again.time(), clock.at(frame)) << frame;
+        }
+        EXPECT_EQ(again.changedValues(), document.changedValues());
+    }
+}
+
+TEST(StateLog, RunsBreakWhereSomethingElseChangesAndReplayBitForBit) {
+    Recorder recorder;
+    const auto scene = movingScene();
+    Document document(scene);
+    document.setText("accumulate.reset", "cut-only");
+    const Clock clock{0, 0, document.render().fps};
+    play(recorder, document, clock, 0, 6);
+    document.setText("path.max-depth", "2");
+    play(recorder, document, clock, 6, 12);
+    const FrameOutput still = recorder.draw(document, 12);
+    expectSame(replayed(recorder.states.json(), scene), still);
+    document.setTime(0.4f);
+    const FrameOutput jumped = recorder.draw(document, 13);
+    expectSame(replayed(recorder.states.json(), scene), jumped);
+    recorder.states.truncate(9);
+    EXPECT_EQ(recorder.states.size(), 9u);
+    EXPECT_EQ(recorder.states.entry(8).frame, 8);
+    EXPECT_EQ(parseReplay(recorder.states.json(), "state").last, 8);
+    Recorder shorter;
+    Document other(scene);
+    other.setText("accumulate.reset", "cut-only");
+    play(shorter, other, clock, 0, 6);
+    other.setText("path.max-depth", "2");
+    play(shorter, other, clock, 6, 8);
+    other.setTime(clock.at(8));
+    const FrameOutput eighth = shorter.draw(other, 8);
+    expectSame(replayed(recorder.states.json(), scene), eighth);
 }
 
 TEST(StateLog, AReplacedFrameIsToldOnce) {
@@ -173,6 +238,12 @@ TEST(ReadReplay, RefusesWhatIsNoState) {
     refuse(R"({"format": "lumiscope-state", "version": 1, "scene": {"name": 3}})", "\"name\"");
     refuse(R"({"format": "lumiscope-state", "version": 1, "scene": {"name": "a", "digest": "b"}, "isa": "v3",
                "start": {"frame": 5, "set": {}}, "frame": 2, "frames": []})", "order");
+    const std::string head = R"({"format": "lumiscope-state", "version": 1, "scene": {"name": "a", "digest": "b"}, "isa": "v3",
+        "start": {"frame": 0, "set": {}}, "frame": 9, "frames": [)";
+    refuse(head + R"({"frame": 1, "last": 4, "clock": {"frame": 0, "time": 0, "fps": 0}}]})", "clock");
+    refuse(head + R"({"frame": 5, "last": 4, "clock": {"frame": 0, "time": 0, "fps": 60}}]})", "clock");
+    refuse(head + R"({"frame": 1, "clock": {"frame": 0, "time": 0, "fps": 60}}]})", "\"last\"");
+    refuse(head + R"({"frame": 3, "set": {}}, {"frame": 2, "set": {}}]})", "order");
     expectError(ErrorKind::BadInput, [&] { readReplay(folder / "missing.exr"); }, {"missing.exr", "no such file"});
     expectError(ErrorKind::BadInput, [&] { readReplay(folder / "notes.txt"); }, {"notes.txt"});
 }

@@ -1,4 +1,4 @@
-#include "app/signals_check.h"
+#include "session/signals_check.h"
 
 #include <fmt/format.h>
 
@@ -45,7 +45,7 @@ bool FrameCheck::holds() const {
     return std::all_of(findings.begin(), findings.end(), [](const ContractFinding& finding) { return finding.holds(); });
 }
 
-std::vector<FrameCheck> checkFrames(Document document, std::stop_token stop) {
+std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop_token stop) {
     const Extent2 extent = smallExtent(document.render());
     const std::string size = fmt::format("{}x{}, {} samples a pixel", extent.width, extent.height, kSamples);
     const float before = document.time();
@@ -58,7 +58,6 @@ std::vector<FrameCheck> checkFrames(Document document, std::stop_token stop) {
     sampling.path = document.path();
     sampling.wanted = contractSignals();
 
-    Tracer tracer;
     const auto first = poseScene(document.scene(), {before, before, before});
     tracer.bind(first);
     std::vector<FrameCheck> checks{checkFrame(tracer, sampling, stop)};

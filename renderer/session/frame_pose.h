@@ -1,0 +1,19 @@
+#pragma once
+#include <initializer_list>
+
+#include "scene/posed_scene.h"
+#include "session/document.h"
+
+namespace lumi {
+
+/// Scene at the document's time, seen from `previousTime`; one of `known` (may be null) is taken if it is just that.
+inline std::shared_ptr<const PosedScene> pose(const Document& document, float previousTime, const PosedScene* earlier,
+                                              std::initializer_list<std::shared_ptr<const PosedScene>> known) {
+    const float time = document.time();
+    for (const auto& posed : known)
+        if (posed && posed->scene == document.scene() && posed->time == time && posed->previousTime == previousTime)
+            return posed;
+    return poseScene(document.scene(), {time, time, previousTime}, earlier);
+}
+
+}  // namespace lumi

@@ -1,0 +1,45 @@
+#include "base/timer.h"
+#include "session/frame_engine.h"
+#include "session/frame_pose.h"
+#include "session/view_buffers.h"
+
+namespace lumi {
+
+std::optional<FrameOutput> FrameEngine::preview(const Document& document, Extent2 extent, std::stop_token stop) {
+    Timer total;
+    const float time = document.time();
+    previewed_ = pose(document, time, current_ ? current_->scene.get() : nullptr,
+                      {current_ ? current_->scene : nullptr, previewed_});
+    bind(previewed_);
+    FrameSampling sampling;
+    sampling.extent = extent;
+    sampling.camera = sampling.previousCamera = poseCamera(document.camera(), extent);
+    sampling.seed = static_cast<uint32_t>(document.render().seed);
+    sampling.jitter = Jitter::PerPixel;
+    sampling.path = document.path();
+    sampling.wanted = shownSignals(document);
+    sampling.wanted.add(Signal::Noisy);
+    if (!previewSignals_ || previewSignals_.use_count() != 1) previewSignals_ = std::make_shared<Signals>();
+    tracer_.resetCounts();
+    Timer tracing;
+    if (!tracer_.sample(sampling, *previewSignals_, stop)) return std::nullopt;
+
+    FrameOutput frame;
+    frame.time = time;
+    frame.camera = sampling.camera;
+    frame.scene = previewed_;
+    frame.signals = previewSignals_;
+    const auto raw = std::make_shared<Image>((*previewSignals_)[Signal::Noisy]);
+    for (const std::string& name : document.activeInstances()) frame.results[name] = raw;
+    frame.rays = tracer_.counts();
+    frame.stagesMs = {{"trace", tracing.elapsedMs()}};
+    frame.frameMs = total.elapsedMs();
+    return frame;
+}
+
+std::vector<FrameCheck> FrameEngine::checkSignals(const Document& document, std::stop_token stop) {
+    bound_ = nullptr;  // the tracer is left bound to moments of the check
+    return checkFrames(document, tracer_, stop);
+}
+
+}  // namespace lumi
