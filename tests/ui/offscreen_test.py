@@ -158,30 +158,28 @@ wait-shown
 key ctrl+space
 pause 2
 key r
-wait-shown
+wait-frame 0
 key .
-wait-frames 1
+wait-frame 1
 key .
-wait-frames 1
+wait-frame 2
 key tab
 shot second
 key ,
 wait-frame 1
 shot first
 key .
-wait-frames 1
+wait-frame 2
 shot second-again
 key space
 key .
-wait-frames 1
+wait-frame 3
 key .
-wait-frames 1
-dump-ui played
+wait-frame 4
 key ctrl+f12
 wait-message Saved
 key r
-wait-shown
-pause 2
+wait-frame 0
 shot restarted
 """, scene="parade",
                        options=["--set", "render.width=160", "--set", "render.height=90", "--module", "none", "--set", "render.spp=2"])
@@ -245,7 +243,7 @@ click signals
 wait-signals
 shot good
 dump-ui good
-click close-signals
+key Esc
 dump-ui closed
 """)
     names = lambda file: {item["name"] for item in json.loads((out / file).read_text())["items"]}

@@ -7,6 +7,7 @@ Exit code 77 (skipped) if Xvfb, xdotool, ImageMagick or python3-xlib is missing.
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -124,6 +125,14 @@ class Window:
             self.tool("key", name)
             time.sleep(0.25)
 
+    def capture(self):
+        """The file that F12 writes now."""
+        before = set(self.captures.glob("*.png"))
+        time.sleep(0.6)  # what was asked for before is drawn
+        self.key("F12")
+        new = self.until("a screenshot", lambda: set(self.captures.glob("*.png")) - before)
+        return new.pop()
+
     def shot(self, name):
         path = FOLDER / f"{name}.png"
         subprocess.run(["import", "-window", "root", "-depth", "8", "-define", "png:color-type=2",
@@ -147,8 +156,43 @@ class Window:
         return subprocess.run(["xdotool", "getwindowname", self.id], capture_output=True, text=True).stdout.strip()
 
 
+def frame_of(capture):
+    """cornell.accumulate.image.0007.png, or ...0007-2.png"""
+    return int(re.search(r"\.(\d{4,})[^.]*\.png$", capture.name).group(1))
+
+
 def passed(what):
     print("passed  " + what, flush=True)
+
+
+def walk_through_time(window):
+    """Pause, step, step back, restart and play, each told by the frame numbers of screenshots; EXR."""
+    window.click("layout:One view")
+    window.click("pause-rendering")
+    first = window.capture()
+    window.key("period")
+    second = window.capture()
+    assert frame_of(second) == frame_of(first) + 1, f"{first.name}, one step, {second.name}"
+    window.key("comma")
+    again = window.capture()
+    assert frame_of(again) == frame_of(first), f"{second.name}, one step back, {again.name}"
+    assert Picture(again).rows == Picture(first).rows, "a step back shows the same picture"
+    window.key("r")
+    assert frame_of(window.capture()) == 0, "restart begins at frame 0"
+    window.click("pause-rendering")
+    window.click("play")
+    time.sleep(1.5)
+    window.click("play")
+    window.click("pause-rendering")
+    assert frame_of(window.capture()) > 0, "frames follow while it plays"
+    window.key("ctrl+F12")
+    exr = window.until("the EXR", lambda: list(window.captures.glob("*.exr")))[0]
+    window.until("all of it", lambda: b"objectId" in exr.read_bytes())
+    data = exr.read_bytes()
+    for layer in (b"albedo.R", b"normal.X", b"depth.Z", b"lumiscope"):
+        assert layer in data, f"{exr.name} lacks {layer}"
+    window.click("pause-rendering")
+    passed("pauses, steps, steps back, restarts, plays, and saves an EXR")
 
 
 def walk_through(window):
@@ -212,6 +256,8 @@ def walk_through(window):
     assert (picture.width, picture.height) == (320, 180), "a screenshot has the rendered size"
     assert picture.texts, "a screenshot carries the state"
     passed("saves a screenshot with its state")
+
+    walk_through_time(window)
 
     window.key("F1")
     assert difference(window.shot("09-help"), wiped, (250, 60, 900, 700)) > 8, "help is on the screen"
