@@ -239,6 +239,7 @@ void Session::restart(FrameNumber first) {
     std::lock_guard lock(impl_->mutex);
     impl_->restartWanted = true;
     impl_->restartFrame = first;
+    impl_->stepWanted = false;
     impl_->frameStop.request_stop();
     impl_->wake.notify_all();
 }

@@ -137,7 +137,7 @@ Session::Impl::Work Session::Impl::takeWork() {
     const bool newFrame = work.kind == Work::Frame;
     if (newFrame) advanceTime(work);
     restartWanted = restartWanted && !newFrame;
-    stepWanted = stepWanted && !newFrame;
+    stepWanted = stepWanted && (!newFrame || work.cut);  // a step asked for after a restart goes on from there
     work.redo = std::exchange(pending, std::nullopt);
     timeEdited = false;
     drawing = newFrame || work.kind == Work::Redraw;

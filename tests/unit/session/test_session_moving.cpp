@@ -95,6 +95,9 @@ TEST_F(SessionMoving, BeginsAgainAtAnyFrame) {
     EXPECT_EQ(parseReplay(session.stateJson(), "state").first, 7);
     session.step();
     waitFor("frame 8", [&] { return shownFrame() == 8; });
+    session.restart();
+    session.step();
+    waitFor("the step after the restart", [&] { return shownFrame() == 1; });
 }
 
 TEST_F(SessionMoving, ChecksTheSignalsOfAScene) {
