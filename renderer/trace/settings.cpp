@@ -74,7 +74,14 @@ void PathSettings::describe(ParameterVisitor& v) {
                  {.label = "Least roughness",
                   .min = 0.02,
                   .max = 1,
-                  .help = "Roughness that lobes have at least after a diffuse scattering.",
+                  .help = "Roughness that lobes have at least after a diffuse scattering, in the first sample.",
+                  .redo = Redo::Samples});
+        v.number("path.regularize-decay", regularizeDecay,
+                 {.label = "Decay",
+                  .min = 0,
+                  .max = 0.5,
+                  .help = "Sample n uses the least roughness times (n + 1)^-decay, so that the mean converges to the "
+                          "image without regularization; 0 keeps its strength.",
                   .redo = Redo::Samples});
     });
     v.choice("sampler.kind", sampler,

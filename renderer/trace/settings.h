@@ -1,4 +1,7 @@
 #pragma once
+#include <cmath>
+#include <cstdint>
+
 #include "params/parameter.h"
 
 namespace lumi {
@@ -21,9 +24,16 @@ struct PathSettings {
     LightSampling lightSampling = LightSampling::Tree;  ///< how a light is chosen
     bool multipleScattering = true;  ///< between the facets of rough reflecting surfaces [Kulla & Conty 2017]
     bool regularize = false;      ///< path-space regularization [Kaplanyan 2013]: widen lobes after a diffuse vertex
-    float regularizeRoughness = 0.3f;
+    float regularizeRoughness = 0.3f;  ///< least roughness of the first sample
+    float regularizeDecay = 1.0f / 6;  ///< of sample n: regularizeRoughness (n + 1)^-regularizeDecay; 0 stays
     SamplerKind sampler = SamplerKind::Sobol;
     int haltonLoop = 16;          ///< Halton: the sequence repeats after this many samples
+
+    /// Roughness that lobes have at least after a diffuse scattering, for this sample of a pixel. With a decay it falls
+    /// below that of mirrors in the end, so that the mean converges to the image without it.
+    float leastRoughness(uint32_t sample) const {
+        return regularizeRoughness * std::pow(static_cast<float>(sample) + 1, -regularizeDecay);
+    }
 
     void describe(ParameterVisitor&);
     bool operator==(const PathSettings&) const = default;
