@@ -81,11 +81,11 @@ Vec2 SchlickAlbedo::smooth(RoughnessRow at, float column) const {
     return a + (b - a) * at.fraction;
 }
 
-Vec2 SchlickAlbedo::average(float roughness) const {
-    const RoughnessRow at(roughness, kMeanRows);
+Vec2 SchlickAlbedo::average(RoughnessRow at, float alpha) const {
+    at = at.finer(kMeanSteps, kMeanRows);
     const size_t row = static_cast<size_t>(at.row);
     const Vec2 mean = average_[row] + (average_[row + 1] - average_[row]) * at.fraction;
-    return {1 - mean.x * sqr(sqr(roughness)) - mean.y, mean.y};
+    return {1 - mean.x * sqr(alpha) - mean.y, mean.y};
 }
 
 }  // namespace lumi

@@ -19,6 +19,14 @@ struct RoughnessRow {
     float fraction = 0;
     RoughnessRow() = default;
     explicit RoughnessRow(float roughness, int rows = kAlbedoRows);
+    /// Of a table that has `times` as many steps, `rows` in all.
+    RoughnessRow finer(int times, int rows) const {
+        const float position = (static_cast<float>(row) + fraction) * static_cast<float>(times);
+        RoughnessRow at;
+        at.row = std::min(static_cast<int>(position), rows - 2);
+        at.fraction = position - static_cast<float>(at.row);
+        return at;
+    }
     /// Roughness that lies on row `row` of `rows`.
     static float roughnessOf(int row, int rows = kAlbedoRows);
 };
@@ -33,8 +41,7 @@ struct FacetView {
     FacetView(float alpha, float cosTheta) {
         const float c = std::clamp(cosTheta, 0.0f, 1.0f), side2 = alpha * alpha * (1 - c * c);
         length = std::sqrt(c * c + side2);
-        const float near = std::sqrt(c), far = std::sqrt(side2 / std::max(length + c, 1e-20f));
-        column = near / std::max(near + far, 1e-20f);
+        column = 1 / (1 + std::sqrt(side2 / std::max((length + c) * c, 1e-30f)));
     }
     /// The cosine that lies on a column.
     static float cosineAt(float column, float alpha);
@@ -48,7 +55,7 @@ public:
 
     Vec2 directional(RoughnessRow at, FacetView view) const { return split(smooth(at, view.column), view.length); }
     /// Mean of directional(), as interpolated, over the hemisphere weighted by the cosine.
-    Vec2 average(float roughness) const;
+    Vec2 average(RoughnessRow at, float alpha) const;
 
     /// What is interpolated, and how the pair follows from it.
     Vec2 smooth(RoughnessRow at, float column) const;
@@ -59,7 +66,7 @@ public:
 private:
     SchlickAlbedo();
     static constexpr int kColumns = 64;
-    static constexpr int kMeanRows = 4 * kAlbedoRows - 3;
+    static constexpr int kMeanSteps = 4, kMeanRows = kMeanSteps * (kAlbedoRows - 1) + 1;
     std::array<std::array<Vec2, kColumns>, kAlbedoRows> smooth_;
     std::array<Vec2, kMeanRows> average_;  ///< what is lost over alpha squared, and y
 };

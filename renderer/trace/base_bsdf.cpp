@@ -45,18 +45,17 @@ Vec2 BaseBsdf::schlickAlbedo(const Vec3& w) const {
 
 Vec2 BaseBsdf::schlickAverage() const {
     if (ggx_.isAnisotropic()) return AnisotropicAlbedo::get().average(ggx_);
-    return smooth_ ? Vec2(20.0f / 21, 1.0f / 21) : SchlickAlbedo::get().average(std::sqrt(ggx_.alpha));
+    return smooth_ ? Vec2(20.0f / 21, 1.0f / 21) : SchlickAlbedo::get().average(row_, ggx_.alpha);
 }
 
-/// 1 - E1(w): what facets that reflect everything scatter more than once.
-float BaseBsdf::multipleBelow(const Vec3& w) const {
-    const Vec2 e = schlickAlbedo(w);
-    return std::max(0.0f, 1 - e.x - e.y);
+/// Looked up once for all lobes of a direction.
+Vec2 BaseBsdf::schlickWhereUsed(const Vec3& w) const {
+    return usesSchlick_ && w.z > 0 ? schlickAlbedo(w) : Vec2(1, 0);
 }
 
 /// What a rough boundary gives back of what it loses to second facets, for light from `w` on either side.
 float BaseBsdf::boundaryReturned(const Vec3& w) const {
-    if (!near_) return multipleBelow({w.x, w.y, std::abs(w.z)});
+    if (!near_) return multipleBelow(schlickAlbedo({w.x, w.y, std::abs(w.z)}));
     return (w.z > 0 ? near_ : far_)->returned(boundaryRow_, {ggx_.alpha, std::abs(w.z)});
 }
 
@@ -77,14 +76,15 @@ BaseBsdf::Facet BaseBsdf::facetAt(float cosTheta) const {
     return facet;
 }
 
-LobeValue BaseBsdf::diffuse(const Vec3& wi) const {
+LobeValue BaseBsdf::diffuse(const Vec3& wi, Vec2 schlick) const {
     if (wi.z <= 0 || probability_[kDiffuse] == 0) return {};
     if (hasFilm_) return {diffuseScale_ * wi.z, pdfCosineHemisphere(wi.z)};
-    const float below = std::max(0.0f, 1 - (glm::dot(schlickAlbedo(wi), Vec2(layerF0_, layerF90_)) + layerMultiple_));
+    const float below = std::max(0.0f, 1 - (glm::dot(schlick, Vec2(layerF0_, layerF90_)) + layerMultiple_));
     return {diffuseScale_ * (below * wi.z), pdfCosineHemisphere(wi.z)};
 }
 
-LobeValue BaseBsdf::reflection(const Vec3& wi, const Vec3& h) const {
+/// `schlick` is schlickWhereUsed(wi).
+LobeValue BaseBsdf::reflection(const Vec3& wi, const Vec3& h, Vec2 schlick) const {
     if (wi.z <= 0 || smooth_ || probability_[kReflection] == 0) return {};
     LobeValue value;
     const float cosFacet = glm::dot(wo_, h);
@@ -95,7 +95,7 @@ LobeValue BaseBsdf::reflection(const Vec3& wi, const Vec3& h) const {
         value.pdf = facet.reflectionChance * density / (1 + lambdaO_);
     }
     if (multipleShare_ > 0) {
-        if (!isBlack(multipleScale_)) value.f += multipleScale_ * (multipleBelow(wi) * wi.z);
+        if (!isBlack(multipleScale_)) value.f += multipleScale_ * (multipleBelow(schlick) * wi.z);
         if (!isBlack(boundaryScale_)) value.f += boundaryScale_ * (boundaryReturned(wi) * wi.z);
         value.pdf = (1 - multipleShare_) * value.pdf +
                     multipleShare_ * (1 - multipleThrough_) * pdfCosineHemisphere(wi.z);
@@ -144,14 +144,15 @@ BsdfValue BaseBsdf::evaluate(const Vec3& wi) const {
         const LobeValue t = transmission(wi);
         return {Vec3(0), t.f, specularProbability_ * t.pdf};
     }
-    const LobeValue d = diffuse(wi), r = reflection(wi, halfVector(wo_ + wi));
+    const Vec2 schlick = schlickWhereUsed(wi);
+    const LobeValue d = diffuse(wi, schlick), r = reflection(wi, halfVector(wo_ + wi), schlick);
     return {d.f, r.f, probability_[kDiffuse] * d.pdf + specularProbability_ * r.pdf};
 }
 
 Vec3 BaseBsdf::evaluate(const Vec3& wi, Lobe lobe) const {
     switch (lobe) {
-        case Lobe::Diffuse: return diffuse(wi).f;
-        case Lobe::SpecularReflection: return reflection(wi, halfVector(wo_ + wi)).f;
+        case Lobe::Diffuse: return diffuse(wi, schlickWhereUsed(wi)).f;
+        case Lobe::SpecularReflection: return reflection(wi, halfVector(wo_ + wi), schlickWhereUsed(wi)).f;
         case Lobe::SpecularTransmission: return transmission(wi).f;
         default: break;
     }
@@ -169,7 +170,8 @@ BsdfSample BaseBsdf::sampleDiffuse(Vec2 u) const {
 }
 
 BsdfSample BaseBsdf::upperSample(const Vec3& wi, const Vec3& h, Lobe lobe) const {
-    const LobeValue d = diffuse(wi), r = reflection(wi, h);
+    const Vec2 schlick = schlickWhereUsed(wi);
+    const LobeValue d = diffuse(wi, schlick), r = reflection(wi, h, schlick);
     const float pdf = probability_[kDiffuse] * d.pdf + specularProbability_ * r.pdf;
     if (!(pdf > 0)) return {};
     return {wi, (d.f + r.f) / pdf, pdf, false, lobe};

@@ -82,12 +82,13 @@ private:
     float reflectionChance(const Vec3& reflected, float through) const;
     Vec2 schlickAlbedo(const Vec3& w) const;
     Vec2 schlickAverage() const;
-    float multipleBelow(const Vec3& w) const;
+    static float multipleBelow(Vec2 schlick) { return std::max(0.0f, 1 - schlick.x - schlick.y); }
+    Vec2 schlickWhereUsed(const Vec3& w) const;
     float boundaryReturned(const Vec3& w) const;
     Facet facetAt(float cosTheta) const;
 
-    LobeValue diffuse(const Vec3& wi) const;
-    LobeValue reflection(const Vec3& wi, const Vec3& h) const;
+    LobeValue diffuse(const Vec3& wi, Vec2 schlick) const;
+    LobeValue reflection(const Vec3& wi, const Vec3& h, Vec2 schlick) const;
     LobeValue transmissionThin(const Vec3& mirrored, const Vec3& h) const;
     LobeValue transmissionSolid(const Vec3& wi, const Vec3& h) const;
     LobeValue transmission(const Vec3& wi) const;
@@ -106,6 +107,8 @@ private:
     RoughnessRow row_;           ///< of all albedo tables
     float lambdaO_ = 0;          ///< ggx_.lambda(wo_)
     Vec2 schlickO_{1, 0};        ///< albedo towards wo under Schlick's term
+    Vec2 schlickMean_{1, 0};     ///< and its mean over the hemisphere; where something uses it
+    bool usesSchlick_ = false;   ///< the lobes depend on the albedo towards wi
     float eta_ = 1;              ///< index of the far side over that of wo's side
     bool smooth_ = false;        ///< reflection is a delta
     bool deltaTransmission_ = false;

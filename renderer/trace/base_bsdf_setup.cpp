@@ -61,8 +61,8 @@ BaseBsdf::BaseBsdf(const BsdfInputs& inputs, const Vec3& wo) : wo_(usableDirecti
     const Vec3 baseColor = saturate(inputs.baseColor), specularColor = nonNegative(inputs.specularColor, 1e4f);
 
     setFacets(inputs, saturate(inputs.roughness));
-    schlickO_ = schlickTowards(opaque > 0);
     solid_ = inputs.solid;
+    if (boundary < 1 || !solid_ || inputs.layered) schlickO_ = schlickTowards(opaque > 0);
 
     const Vec3 layerF0 = glm::min(sqr((ior - 1) / (ior + 1)) * specularColor, Vec3(1)) * specular;
     f0_ = opaque * layerF0 + metallic * baseColor;
@@ -70,8 +70,11 @@ BaseBsdf::BaseBsdf(const BsdfInputs& inputs, const Vec3& wo) : wo_(usableDirecti
     const bool inside = solid_ && !inputs.entering;
     if (inputs.layered && inputs.layers.iridescence > 0 && !inside)
         setFilm(inputs.layers, (1 - metallic) * layerF0 + metallic * baseColor, opaque * specular + metallic + boundary);
-    if (inputs.multipleScattering && !smooth_) {
-        const float eavg = schlickAverage().x + schlickAverage().y;
+    const bool multiple = inputs.multipleScattering && !smooth_;
+    usesSchlick_ = opaque > 0 || (multiple && metallic > 0);
+    if (usesSchlick_ || (multiple && boundary > 0)) schlickMean_ = schlickAverage();
+    if (multiple) {
+        const float eavg = schlickMean_.x + schlickMean_.y;
         layerMultiple_ = manyBounces(schlickMean(maxComponent(layerF0), specular), eavg);
         setMultiple(opaque + metallic);
     }
@@ -117,8 +120,7 @@ void BaseBsdf::setFilm(const LayerInputs& layers, const Vec3& baseF0, float refl
 
 void BaseBsdf::setMultiple(float share) {
     if (!(share > 0)) return;
-    const Vec2 mean = schlickAverage();
-    const float eavg = mean.x + mean.y;
+    const float eavg = schlickMean_.x + schlickMean_.y;
     const Vec3 film = hasFilm_ ? film_.averageReflectance() : Vec3(0);
     for (int c = 0; c < 3; ++c) {
         const float bare = schlickMean(f0_[c], f90_) / share;
@@ -132,16 +134,15 @@ void BaseBsdf::setMultiple(float share) {
 /// leaves, held where reciprocity wants it. With l the losses of both sides and t the shares that go through,
 /// t_near l_near = n^2 t_far l_far; (1 - Favg) obeys that with n^2 alone, the lesser loss of both adds the rest.
 void BaseBsdf::setBoundaryMultiple(const Vec2& once) {
-    const float alphaRoughness = std::sqrt(ggx_.alpha);
     float lost, mean, meanFar, fresnel;
     if (near_) {
         lost = near_->returned(boundaryRow_, {ggx_.alpha, wo_.z});
-        mean = near_->averageReturned(alphaRoughness), meanFar = far_->averageReturned(alphaRoughness);
+        mean = near_->averageReturned(boundaryRow_, ggx_.alpha);
+        meanFar = far_->averageReturned(boundaryRow_, ggx_.alpha);
         fresnel = near_->averageFresnel();
     } else {
-        const Vec2 average = schlickAverage();
         lost = 1 - once.x - once.y;
-        mean = meanFar = std::max(1 - average.x - average.y, kLeastLoss);
+        mean = meanFar = std::max(1 - schlickMean_.x - schlickMean_.y, kLeastLoss);
         fresnel = DielectricAlbedo::get(eta_, true).averageFresnel();
     }
     const float through = (1 - fresnel) * std::min(1.0f, meanFar / mean);
@@ -161,10 +162,9 @@ void BaseBsdf::setBoundaryMultiple(const Vec2& once) {
 void BaseBsdf::setDiffuse(const Vec3& rho, float f0, float f90) {
     layerF0_ = f0 - layerMultiple_, layerF90_ = f90 - layerMultiple_;
     const Vec2 fresnel(layerF0_, layerF90_);
-    const Vec2 mean = schlickAverage();
     const float below = std::max(0.0f, 1 - (glm::dot(schlickO_, fresnel) + layerMultiple_));
     albedo_[kDiffuse] = rho * below;
-    diffuseScale_ = albedo_[kDiffuse] * (kInvPi / std::max(1 - (glm::dot(mean, fresnel) + layerMultiple_), 1e-4f));
+    diffuseScale_ = albedo_[kDiffuse] * (kInvPi / std::max(1 - (glm::dot(schlickMean_, fresnel) + layerMultiple_), 1e-4f));
 }
 
 void BaseBsdf::setDiffuseUnderFilm(const Vec3& rho, float specular) {

@@ -133,11 +133,11 @@ float DielectricAlbedo::lost(RoughnessRow at, FacetView view) const {
     return bilinear(lost_, at, view.column * (kLossColumns - 1));
 }
 
-float DielectricAlbedo::averageReturned(float roughness) const {
-    const RoughnessRow at(roughness, kMeanRows);
+float DielectricAlbedo::averageReturned(RoughnessRow at, float alpha) const {
+    at = at.finer(kMeanSteps, kMeanRows);
     const size_t row = static_cast<size_t>(at.row);
     const float mean = averageReturned_[row] + (averageReturned_[row + 1] - averageReturned_[row]) * at.fraction;
-    return std::max(mean * sqr(sqr(roughness)), 1e-12f);
+    return std::max(mean * sqr(alpha), 1e-12f);
 }
 
 namespace {

@@ -26,12 +26,13 @@ public:
     /// Of that, what can be given back for sure: less by the table's error.
     float returned(RoughnessRow at, FacetView view) const { return std::max(0.0f, lost(at, view) - margin_); }
     /// Mean of returned(), as interpolated, over the hemisphere weighted by the cosine. Above 0.
-    float averageReturned(float roughness) const;
+    float averageReturned(RoughnessRow at, float alpha) const;
     /// Mean of the Fresnel term over the hemisphere weighted by the cosine.
     float averageFresnel() const { return averageFresnel_; }
 
 private:
-    static constexpr int kColumns = 65, kLossColumns = 65, kMeanRows = 4 * kRows - 3;
+    static constexpr int kColumns = 65, kLossColumns = 65, kMeanSteps = 4,
+                         kMeanRows = kMeanSteps * (kRows - 1) + 1;
     float columnOf(float cosTheta) const;
     float cosineAt(float column) const;
     void tabulateReflected(float eta);
