@@ -121,8 +121,8 @@ TEST(BsdfDistribution, ChiSquare) {
 // distribution, by azimuth. Whatever does not reflect is one more cell. Broad lobes are left out: they fall into the few
 // steepest facets.
 TEST(BsdfDistribution, NarrowLobesInTheirOwnCells) {
-    constexpr int kSamples = 20000, kShares = 8, kTurns = 12, kInner = 32;
-    const std::vector<float> roughnesses{0, 0.02f, 0.05f, 0.1f};
+    constexpr int kSamples = 20000, kShares = 8, kTurns = 12, kInner = 24;
+    const std::vector<float> roughnesses{0, 0.02f, 0.06f};
     const double level = sidakLevel(0.01, 200);
     const auto check = [&](const Bsdf&, const BsdfInputs& given, const Vec3& wo, const std::string& label) {
         BsdfInputs inputs = given;
@@ -161,7 +161,7 @@ TEST(BsdfDistribution, NarrowLobesInTheirOwnCells) {
         expected.back() = std::max(1 - sum, 1e-6) * kSamples;
         EXPECT_GT(chiSquareTest(observed, expected), level) << label;
     };
-    forEachBsdf(roughnesses, {0.95f, 0.5f, 0.15f}, check);
+    forEachBsdf(roughnesses, {0.95f, 0.15f}, check);
 }
 
 TEST(BsdfDistribution, SampleAgreesWithEvaluate) {
