@@ -48,7 +48,9 @@ render() {
 tile() { # tile SHEET
     local pictures=("$out/$1"/*.png)
     [ -e "${pictures[0]}" ] || return 0
-    montage -font "$(fc-match -f '%{file}' sans)" -pointsize 9 -label '%t' "${pictures[@]}" -tile 8x -geometry '+4+2' \
+    local font=()
+    command -v fc-match >/dev/null && font=(-font "$(fc-match -f '%{file}' sans)")
+    montage "${font[@]}" -pointsize 9 -label '%t' "${pictures[@]}" -tile 8x -geometry '+4+2' \
         -background '#202020' -fill white "$out/$1.png"
     echo "$out/$1.png: ${#pictures[@]} pictures"
 }

@@ -56,8 +56,8 @@ void addTriangle(const std::array<Vec3, kRays>& directions, const Vec3& a, const
     for (size_t i = 0; i < kRays; ++i) {
         const float u = glm::dot(directions[i], ab), v = glm::dot(directions[i], bc), w = glm::dot(directions[i], ca);
         const bool ahead = volume > 0 ? u >= 0 && v >= 0 && w >= 0 : u <= 0 && v <= 0 && w <= 0;
-        // u + v + w is the triangle's normal times the direction.
-        if (ahead) hits.add(i, volume / (u + v + w), (volume < 0) != mirrored);
+        // u + v + w is the triangle's normal times the direction: 0 for slivers that the ray runs along.
+        if (ahead && u + v + w != 0) hits.add(i, volume / (u + v + w), (volume < 0) != mirrored);
     }
 }
 
@@ -122,8 +122,8 @@ float enclosureOf(const FirstHits& hits) {
 }
 
 /// Stands in a room and looks along its longer horizontal axis: from the middle, or, if the room is open at one end of
-/// the axis, from there. False, and nothing done, if the first thing in sight is right before the camera: the middle of
-/// the bounds is then some corner of an object.
+/// the axis, from there. False, and nothing done, if that is no place to look from: the first thing in sight is right
+/// before the camera, both ways in a closed room.
 bool standInside(const Vec3& centre, const Vec3& half, const FirstHits& hits, Camera& camera) {
     const auto isOpen = [&](int axis, int end) {
         return hits.distance[static_cast<size_t>(kSpread + 2 * axis + end)] == kInfinity;
@@ -133,10 +133,15 @@ bool standInside(const Vec3& centre, const Vec3& half, const FirstHits& hits, Ca
     const bool nearlySquare = std::min(half.x, half.z) > 0.95f * std::max(half.x, half.z);
     if (nearlySquare && openEnds(axis) != 1 && openEnds(1 - axis) == 1) axis = 1 - axis;
     const Vec3 along = axis == 0 ? Vec3(half.x, 0, 0) : Vec3(0, 0, half.z);
-    const Vec3 forward = openEnds(axis) == 1 ? (isOpen(axis, 0) ? -along : along) : (axis == 0 ? along : -along);
-    const int end = forward.x + forward.z > 0 ? 0 : 1;
-    if (hits.distance[static_cast<size_t>(kSpread + 2 * axis + end)] < 0.25f * half[2 * axis]) return false;
-    camera.eye = openEnds(axis) == 1 ? centre - 0.98f * forward : centre;
+    const bool fromOpening = openEnds(axis) == 1;
+    int end = fromOpening ? (isOpen(axis, 0) ? 1 : 0) : axis;
+    const auto isBlocked = [&] {
+        return hits.distance[static_cast<size_t>(kSpread + 2 * axis + end)] < 0.25f * half[2 * axis];
+    };
+    if (!fromOpening && isBlocked()) end = 1 - end;
+    if (isBlocked()) return false;
+    const Vec3 forward = end == 0 ? along : -along;
+    camera.eye = fromOpening ? centre - 0.98f * forward : centre;
     camera.target = centre + forward;
     return true;
 }

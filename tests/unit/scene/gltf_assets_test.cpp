@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "base/error.h"
+#include "scene/defaults.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/obj/load_obj.h"
 #include "scene/posed_scene.h"
@@ -48,6 +49,9 @@ TEST_F(GltfAssets, SponzaAndKitchenAreWhole) {
     EXPECT_EQ(sponza.triangleCount(), 262205);
     EXPECT_EQ(sponza.instances.size(), 391u);
     EXPECT_EQ(sponza.materials.size(), 25u);
+    const Camera camera = defaultCamera(sponza);
+    EXPECT_LT(glm::distance(camera.eye, sponza.restBounds().centre()), 1e-3f) << "one stands inside";
+    EXPECT_GT(camera.target.x, 10);
     const Scene kitchen = load("BitterliKitchen/kitchen.gltf");
     EXPECT_EQ(kitchen.triangleCount(), 1443307);
     EXPECT_EQ(kitchen.cameras.size(), 1u);
