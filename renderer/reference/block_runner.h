@@ -17,6 +17,8 @@ public:
     /// Traces samples up to `end`, a multiple of kLeafSamples; the first one, if there are no blocks yet, is `begin`.
     /// `progress.target` is told as it is. Throws Error(Interrupted), Error(Resources) if the sums do not fit.
     void advanceTo(uint64_t begin, uint64_t end, const ReferenceProgress& progress);
+    /// Throws Error(Resources) if the sums of samples up to `end` do not fit the memory limit.
+    void checkMemoryFor(uint64_t end) const;
     /// What has been traced since the last save is kept.
     void save();
     bool traced() const { return traced_; }

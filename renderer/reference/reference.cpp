@@ -103,6 +103,7 @@ private:
     }
 
     void climb(BlockRunner& runner) {
+        runner.checkMemoryFor(std::max(target_, kLeafSamples));
         if (state_.depth.empty()) state_.depth = tracer_.traceDepth();
         if (target_ > 0 && state_.samples() == target_) return;
         for (;;) {

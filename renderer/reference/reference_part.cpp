@@ -87,8 +87,9 @@ void makeReferencePart(const ReferenceSpec& spec, SampleRange range, const fs::p
     state.goal = true;
     state.note = note;
     BlockTracer tracer(spec);
-    if (state.depth.empty()) state.depth = tracer.traceDepth();
     BlockRunner runner(tracer, options, state, [&] { writeReferenceFile(partial, state); });
+    runner.checkMemoryFor(range.end);
+    if (state.depth.empty()) state.depth = tracer.traceDepth();
     const uint64_t resumed = state.blocks.range().count();
     if (resumed < range.count()) runner.advanceTo(range.begin, range.end, {0, range.count(), resumed, 0, false});
     writeReferenceFile(file, state);

@@ -123,7 +123,7 @@ class Reference(CommandTest):
         self.assertEqual(len(self.kept()), 1)
 
     def test_progress_when_asked_for(self):
-        result = self.good("reference", "cornell", "--size", "120x90", "--spp", 256, "--out", "a.exr", "--progress", "always")
+        result = self.good("reference", "cornell", "--size", "80x60", "--spp", 256, "--out", "a.exr", "--progress", "always")
         self.assertIn("of 256 spp", result.err)
         self.assertNotIn("\r", self.good("reference", "cornell", *SIZE, "--spp", 64, "--out", "a.exr").err)
 
