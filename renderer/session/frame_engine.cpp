@@ -20,12 +20,18 @@ std::optional<Redo> worstChange(const std::vector<ParameterInfo>& before, const 
     return worst;
 }
 
-bool isActive(const std::string& instance, const Document& document) {
-    const std::vector<std::string> active = document.activeInstances();
-    return std::find(active.begin(), active.end(), instance) != active.end();
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 }  // namespace
+
+std::vector<std::string> FrameRequest::activeInstances() const {
+    std::vector<std::string> active = document.activeInstances();
+    for (const std::string& name : instances)
+        if (!contains(active, name)) active.push_back(name);
+    return active;
+}
 
 bool FrameOutput::rests() const {
     return !convergence.empty() &&
@@ -42,7 +48,7 @@ std::optional<FrameOutput> FrameEngine::advance(const FrameRequest& request, std
     const bool replaces = current_ && request.frame == current_->frame;
     const std::optional<Completed>& previous = replaces ? before_ : current_;
 
-    Completed next{request.frame, request.document, {}, Jitter::Auto, nullptr, nullptr, {}};
+    Completed next{request.frame, request.document, request.activeInstances(), {}, Jitter::Auto, nullptr, nullptr, {}};
     const RenderSettings& render = request.document.render();
     next.camera = poseCamera(request.document.camera(), {render.width, render.height});
 
@@ -65,7 +71,7 @@ std::optional<FrameOutput> FrameEngine::advance(const FrameRequest& request, std
     if (!traceSignals(request, previousCamera, replaces, next, timer, stop)) return std::nullopt;
     if (!runModules(request, next, previousCamera, frame, timer, stop)) return std::nullopt;
 
-    adoptFreshInstances(next.document, replaces);
+    adoptFreshInstances(next.instances, replaces);
 
     frame.number = request.frame;
     frame.time = next.document.time();
@@ -87,7 +93,7 @@ FrameEngine::Instance& FrameEngine::running(const std::string& name) {
 
 void FrameEngine::prepareInstances(const FrameRequest& request, Extent2 extent, const Completed* previous) {
     fresh_.clear();
-    for (const std::string& name : request.document.activeInstances()) {
+    for (const std::string& name : request.activeInstances()) {
         const std::vector<ParameterInfo> parameters = request.document.list(name + ".");
         const auto old = instances_.find(name);
         bool goesOn = previous && old != instances_.end() && old->second.extent == extent;
@@ -95,7 +101,7 @@ void FrameEngine::prepareInstances(const FrameRequest& request, Extent2 extent, 
             const Instance& instance = old->second;
             const std::optional<Redo> change = worstChange(instance.parameters, parameters);
             goesOn = (instance.lastFrame == request.frame ||
-                      (instance.lastFrame == previous->frame && isActive(name, previous->document))) &&
+                      (instance.lastFrame == previous->frame && contains(previous->instances, name))) &&
                      (!change || (*change < Redo::History && !instance.failed));
         }
         if (!goesOn) {
@@ -111,20 +117,20 @@ void FrameEngine::prepareInstances(const FrameRequest& request, Extent2 extent, 
     }
 }
 
-void FrameEngine::adoptFreshInstances(const Document& document, bool replaces) {
+void FrameEngine::adoptFreshInstances(const std::vector<std::string>& active, bool replaces) {
     for (auto& [name, instance] : fresh_) instances_[name] = std::move(instance);
     fresh_.clear();
     // What ran in the frame before, or in this one before it was replaced, stays: it may be asked for again.
     if (replaces) return;
     std::erase_if(instances_, [&](const auto& entry) {
-        return !isActive(entry.first, document) && !(current_ && isActive(entry.first, current_->document));
+        return !contains(active, entry.first) && !(current_ && contains(current_->instances, entry.first));
     });
 }
 
 SignalSet FrameEngine::wantedSignals(const FrameRequest& request) {
     SignalSet wanted = request.signals | shownSignals(request.document);
     wanted.add(Signal::Noisy);  // what is shown if a module fails
-    for (const std::string& name : request.document.activeInstances()) wanted |= running(name).module->reads();
+    for (const std::string& name : request.activeInstances()) wanted |= running(name).module->reads();
     return wanted;
 }
 
@@ -196,7 +202,7 @@ bool FrameEngine::runModules(const FrameRequest& request, const Completed& next,
                              FrameOutput& frame, StageTimer& timer, std::stop_token stop) {
     frame.historyDropped = true;
     const std::map<std::string, TapSet> shown = shownTaps(next.document);
-    for (const std::string& name : next.document.activeInstances()) {
+    for (const std::string& name : next.instances) {
         Instance& current = running(name);
         TapSet wanted;
         if (const auto taps = request.taps.find(name); taps != request.taps.end()) wanted = taps->second;
@@ -209,7 +215,9 @@ bool FrameEngine::runModules(const FrameRequest& request, const Completed& next,
         const FrameContext context{request.frame, *next.signals, *next.scene, next.camera, previousCamera,
                                    changes,       wanted,        tracer_,     timer,       stop};
         auto out = std::make_shared<Image>();
+        const Timer run;
         if (!runModule(name, context, *out, frame)) return false;
+        frame.runMs[name] = run.elapsedMs();
         if (current.firstFrame < 0) current.firstFrame = request.frame;
         current.lastFrame = request.frame;
         current.parameters = next.document.list(name + ".");
@@ -244,7 +252,7 @@ bool FrameEngine::runModule(const std::string& name, const FrameContext& context
 bool FrameEngine::canRepeat(FrameNumber frame) const {
     return current_ && current_->frame == frame &&
            std::none_of(instances_.begin(), instances_.end(), [&](const auto& entry) {
-               return entry.second.lastFrame > frame && isActive(entry.first, current_->document);
+               return entry.second.lastFrame > frame && contains(current_->instances, entry.first);
            });
 }
 

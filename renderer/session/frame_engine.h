@@ -15,13 +15,18 @@
 
 namespace lumi {
 
-/// One frame as asked for. The instances that run are those of the document's drawn views.
+/// One frame as asked for. The instances that run are those of the document's drawn views and those named here, all on
+/// the same samples.
 struct FrameRequest {
     const Document& document;
     FrameNumber frame = 0;
     bool cut = false;                    ///< nothing before this frame counts: as in a fresh engine
     SignalSet signals;                   ///< wanted beyond what the modules read and the views show
     std::map<std::string, TapSet> taps;  ///< wanted beyond what the views show, by instance
+    std::vector<std::string> instances{};  ///< that run besides those of the views
+
+    /// Each once: those of the views first.
+    std::vector<std::string> activeInstances() const;
 };
 
 /// One completed frame. Images are shared and never change again.
@@ -37,6 +42,7 @@ struct FrameOutput {
     std::map<std::string, std::shared_ptr<const Image>> taps;     ///< "<instance>-<tap>"
     std::map<std::string, Convergence> convergence;               ///< by instance
     std::vector<std::pair<std::string, double>> stagesMs;
+    std::map<std::string, double> runMs;  ///< by instance: its run() as a whole
     double frameMs = 0;
     TraceCounts rays;
 
@@ -77,6 +83,7 @@ private:
     struct Completed {
         FrameNumber frame = -1;
         Document document;
+        std::vector<std::string> instances;  ///< that ran
         CameraPose camera;
         Jitter jitter = Jitter::Auto;  ///< in effect
         std::shared_ptr<const PosedScene> scene;
@@ -98,7 +105,7 @@ private:
     /// `previous`: the frame before, null on a cut.
     void prepareInstances(const FrameRequest& request, Extent2 extent, const Completed* previous);
     Instance& running(const std::string& name);
-    void adoptFreshInstances(const Document& document, bool replaces);
+    void adoptFreshInstances(const std::vector<std::string>& active, bool replaces);
     SignalSet wantedSignals(const FrameRequest& request);
     Jitter effectiveJitter(const Document& document);
     FrameSampling sampling(const FrameRequest& request, const Completed& next, const CameraPose& previousCamera);

@@ -160,6 +160,26 @@ TEST(FrameEngine, BothViewsSeeTheSameSamples) {
     EXPECT_EQ(*frame.results.at("accumulate"), *frame.results.at("none"));
 }
 
+TEST(FrameEngine, InstancesBeyondTheViewsRunOnTheSameSamples) {
+    Engine e, alone;
+    Document document(tinyScene());
+    document.setText("view.0.module", "accumulate");
+    document.setText("accumulate@b.limit", "true");
+    document.setText("accumulate@b.max-samples", "1");
+    for (FrameNumber number = 0; number < 3; ++number) {
+        FrameRequest request{document, number, number == 0, {}, {}};
+        request.instances = {"none", "accumulate@b", "accumulate"};
+        const FrameOutput frame = *e.engine.advance(request);
+        ASSERT_EQ(frame.results.size(), 3u);
+        EXPECT_EQ(*frame.results.at("none"), (*frame.signals)[Signal::Noisy]);
+        EXPECT_EQ(frame.runMs.size(), 3u);
+        EXPECT_EQ(frame.convergence.at("accumulate").samples, static_cast<uint64_t>(number + 1));
+        EXPECT_EQ(frame.convergence.at("accumulate@b").samples, 1u) << "its own parameters";
+        // What runs beside it does not change a module's image.
+        EXPECT_EQ(*frame.results.at("accumulate"), *alone.draw(document, number).results.at("accumulate"));
+    }
+}
+
 TEST(FrameEngine, AHiddenModuleBeginsAgainWhenItComesBack) {
     Engine e;
     Document shown(tinyScene()), hidden = shown;
