@@ -1,0 +1,110 @@
+#include "study/frame_runner.h"
+
+#include "base/error.h"
+#include "study/study_file.h"
+
+namespace lumi {
+namespace {
+
+/// In a study file a value that does not fit is bad input, wherever it is found.
+void setValue(Document& document, const std::string& id, const std::string& text, const std::string& where) {
+    try {
+        document.setText(id, text, where);
+    } catch (const Error& error) {
+        throw Error(error.kind() == ErrorKind::Usage ? ErrorKind::BadInput : error.kind(), error.text());
+    }
+}
+
+void setAll(Document& document, const std::vector<StudyValue>& values) {
+    for (const StudyValue& value : values) setValue(document, value.id, value.text, value.where);
+}
+
+void setDefining(Document& document, const std::vector<StudyValue>& values) {
+    for (const StudyValue& value : values)
+        if (definesImage(value.id)) setValue(document, value.id, value.text, value.where);
+}
+
+/// The scene at the study's size.
+Document baseDocument(const JobContext& context) {
+    Document document(context.scene);
+    const Study& study = context.study;
+    if (study.size.width > 0) {
+        setValue(document, "render.width", std::to_string(study.size.width), study.path.string());
+        setValue(document, "render.height", std::to_string(study.size.height), study.path.string());
+    }
+    setValue(document, "view.layout", "single", study.path.string());
+    setValue(document, "view.0.buffer", "image", study.path.string());
+    return document;
+}
+
+/// What a reference of the job is a rendering of.
+Document problemDocument(const JobContext& context, const StudyJob& job) {
+    Document document = baseDocument(context);
+    setDefining(document, context.study.scenes[job.scene].set);
+    setDefining(document, context.study.set);
+    setDefining(document, job.sampling);
+    setAll(document, context.study.reference.set);
+    return document;
+}
+
+Document jobDocument(const JobContext& context, const StudyJob& job, const std::vector<RunningMethod>& methods) {
+    Document document = baseDocument(context);
+    setAll(document, context.study.scenes[job.scene].set);
+    setAll(document, context.study.set);
+    setAll(document, job.sampling);
+    setValue(document, "render.spp", std::to_string(job.spp), context.study.path.string());
+    setValue(document, "render.seed", std::to_string(job.seed), context.study.path.string());
+    for (const RunningMethod& method : methods)
+        for (const StudyValue& value : method.set)
+            setValue(document, method.instance + "." + value.id, value.text, value.where);
+    // The first view's module decides the offset of camera rays; all methods of a job want the same.
+    setValue(document, "view.0.module", methods.front().instance, context.study.path.string());
+    return document;
+}
+
+float timeOf(const Study& study, const Document& document, int64_t frame) {
+    const double fps = study.frames.fps > 0 ? study.frames.fps : document.render().fps;
+    const int64_t shown = study.frames.still ? study.frames.begin : frame;
+    // A scene that is shown as a single still picture keeps the time that its document has.
+    if (study.frames.begin == 0 && (study.frames.still || study.frames.end == 1)) return document.time();
+    return static_cast<float>(static_cast<double>(shown) / fps);
+}
+
+}  // namespace
+
+std::vector<RunningMethod> methodsOf(const JobContext& context, const StudyJob& job) {
+    std::vector<RunningMethod> methods;
+    for (const size_t index : job.methods) {
+        const StudyMethod& method = context.plan.methods[index];
+        const StudyEntry& entry = context.study.entries[method.entry];
+        RunningMethod running{method.instance, {}};
+        for (const StudyValue& value : method.set)
+            if (!isDocumentId(entry.module, value.id)) running.set.push_back(value);
+        if (!entry.tune.empty())
+            for (const StudyValue& value : context.tuned(method.entry, job.spp)) running.set.push_back(value);
+        methods.push_back(std::move(running));
+    }
+    return methods;
+}
+
+FrameRunner::FrameRunner(const JobContext& context, const StudyJob& job, std::vector<RunningMethod> methods)
+    : context_(context), methods_(std::move(methods)), document_(jobDocument(context, job, methods_)),
+      problem_(problemDocument(context, job)), engine_(context.log), next_(context.study.frames.begin) {}
+
+FrameOutput FrameRunner::advance(const SignalSet& signals) {
+    const int64_t number = next_++;
+    const float time = timeOf(context_.study, document_, number);
+    document_.setTime(time);
+    problem_.setTime(time);
+    FrameRequest request{document_, number, number == context_.study.frames.begin, signals, {}};
+    for (const RunningMethod& method : methods_) request.instances.push_back(method.instance);
+    std::optional<FrameOutput> frame = engine_.advance(request, context_.stop);
+    if (!frame) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
+    return std::move(*frame);
+}
+
+std::shared_ptr<const StudyReferenceFrame> FrameRunner::reference(const StudyReferences::Report& report) {
+    return context_.references.get(problem_, context_.stop, report);
+}
+
+}  // namespace lumi

@@ -1,0 +1,42 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "session/frame_engine.h"
+#include "study/run_job.h"
+
+namespace lumi {
+
+/// A method as the frame engine runs it.
+struct RunningMethod {
+    std::string instance;
+    std::vector<StudyValue> set;  ///< of the module
+};
+
+/// The methods of a measuring job, with what tuning chose.
+std::vector<RunningMethod> methodsOf(const JobContext& context, const StudyJob& job);
+
+/// Drives the frame engine over the study's frames, from an empty history on.
+class FrameRunner {
+public:
+    /// Throws Error(BadInput) headed by the study file's position for a value that the scene's document does not take.
+    FrameRunner(const JobContext& context, const StudyJob& job, std::vector<RunningMethod> methods);
+
+    /// The next frame, with `signals` beside what the methods read. Throws Error(Interrupted).
+    FrameOutput advance(const SignalSet& signals);
+    int64_t next() const { return next_; }
+    /// Of the frame that was drawn last.
+    std::shared_ptr<const StudyReferenceFrame> reference(const StudyReferences::Report& report);
+    float exposure() const { return metricExposure(problem_); }
+    const std::vector<RunningMethod>& methods() const { return methods_; }
+
+private:
+    const JobContext& context_;
+    std::vector<RunningMethod> methods_;
+    Document document_;  ///< what the methods see
+    Document problem_;   ///< what a reference is a rendering of
+    FrameEngine engine_;
+    int64_t next_;
+};
+
+}  // namespace lumi

@@ -1,0 +1,61 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lumi {
+
+/// A mean with its uncertainty. With fewer than two values nothing is known about it: `low` and `high` are NaN.
+struct Interval {
+    int64_t count = 0;
+    double mean = 0;
+    double standardError = 0;
+    double low = 0, high = 0;  ///< confidence interval of the mean
+
+    bool known() const { return count > 1; }
+    /// Is the mean surely not 0, at the interval's level?
+    bool excludesZero() const { return known() && (low > 0 || high < 0); }
+};
+
+enum class IntervalMethod { StudentT, Bootstrap };
+
+/// Mean of independent values with its two-sided interval at `level` (0.95): Student's t, or the bias-corrected and
+/// accelerated bootstrap [Efron 1987] with 4000 resamples from fixed random numbers.
+Interval meanInterval(std::span<const double> values, double level, IntervalMethod method = IntervalMethod::StudentT);
+
+/// Interval of the mean difference a[i] - b[i] of values that were measured on the same samples.
+Interval pairedInterval(std::span<const double> a, std::span<const double> b, double level,
+                        IntervalMethod method = IntervalMethod::StudentT);
+
+/// The places that a method may have in a ranking, counted from 1.
+struct Rank {
+    int best = 1, worst = 1;
+    bool certain() const { return best == worst; }
+};
+
+/// Ranks methods by the paired differences between all pairs; each pair is tested at a level that makes `level` hold for
+/// all of them together [Sidak 1967]. A method that no test tells from another shares its places. Each row of `values`
+/// is one method, measured on the same units.
+std::vector<Rank> rankMethods(const std::vector<std::vector<double>>& values, bool higherIsBetter, double level,
+                              IntervalMethod method = IntervalMethod::StudentT);
+
+/// Mean squared error of repeated renderings of one image, in two parts: what would stay if the seeds never ended, and
+/// what they average away.
+struct BiasVariance {
+    double meanSquaredError = 0;  ///< mean over the seeds, the reference's own noise taken off
+    double squaredBias = 0;       ///< unbiased estimate: may come out a little below 0
+    double variance = 0;          ///< of one rendering
+};
+
+/// `squaredErrors`: mean over pixels of (image - reference)^2, a seed each; `squaredMeanError`: mean over pixels of the
+/// squared mean over the seeds of (image - reference); `referenceNoise`: the reference's own mean squared error.
+BiasVariance separateBias(std::span<const double> squaredErrors, double squaredMeanError, double referenceNoise);
+
+/// Slope of the least-squares line through (log x, log y); NaN with fewer than two different x or a y that is not above 0.
+double logLogSlope(std::span<const double> x, std::span<const double> y);
+
+/// y at `at` on the polyline through (x, y) in log-log space, x ascending; NaN outside [x.front(), x.back()] or where a
+/// value is not above 0.
+double logLogAt(std::span<const double> x, std::span<const double> y, double at);
+
+}  // namespace lumi

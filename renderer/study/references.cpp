@@ -1,0 +1,79 @@
+#include "study/references.h"
+
+#include "base/files.h"
+#include "measure/measure.h"
+#include "reference/reference.h"
+#include "session/reference_spec.h"
+
+namespace lumi {
+namespace {
+
+/// References that stay in memory: those of the measured frames of one scene, usually.
+constexpr size_t kKept = 8;
+
+double measured(const std::string& metric, const Image& image, const Image& reference, float exposureEv) {
+    ImagePair pair{image, reference, {}, exposureEv};
+    pair.prepare();
+    return findMetric(metric).measure(pair, false).value;
+}
+
+Image meanOf(const Image& a, const Image& b) {
+    Image mean(a.extent(), a.channels());
+    for (size_t i = 0; i < mean.size(); ++i) mean.data()[i] = 0.5f * (a.data()[i] + b.data()[i]);
+    return mean;
+}
+
+}  // namespace
+
+float metricExposure(const Document& document) { return document.view(0).display.exposureEv; }
+
+std::shared_ptr<const StudyReferenceFrame> StudyReferences::get(const Document& document, std::stop_token stop,
+                                                                const Report& report) {
+    Document problem = document;
+    problem.setText("render.seed", std::to_string(kReferenceSeed));
+    if (!problem.loadedScene()->isAnimated()) problem.setTime(0);  // one reference serves all frames
+    const std::string key = referenceKey(referenceSpec(problem)) + std::to_string(metricExposure(problem));
+    for (auto kept = kept_.begin(); kept != kept_.end(); ++kept) {
+        if (kept->key != key) continue;
+        kept_.splice(kept_.begin(), kept_, kept);
+        return kept_.front().frame;
+    }
+    const std::shared_ptr<StudyReferenceFrame> made = make(problem, stop, report);
+    const std::string content = key + ' ' + std::to_string(study_.reference.spp);
+    made->key = digest({reinterpret_cast<const uint8_t*>(content.data()), content.size()}).substr(0, 8);
+    kept_.push_front({key, made});
+    if (kept_.size() > kKept) kept_.pop_back();
+    return kept_.front().frame;
+}
+
+std::shared_ptr<StudyReferenceFrame> StudyReferences::make(const Document& problem, std::stop_token stop,
+                                                           const Report& report) {
+    const ReferenceGoal goal{static_cast<uint64_t>(study_.reference.spp / 2)};
+    auto frame = std::make_shared<StudyReferenceFrame>();
+    Image halves[2];
+    frame->cached = true;
+    for (uint32_t i = 0; i < 2; ++i) {
+        ReferenceSpec spec = referenceSpec(problem);
+        spec.seed += i;
+        ReferenceOptions options;
+        options.cache = cache_;
+        options.log = &log_;
+        options.stop = stop;
+        if (report)
+            options.progress = [&](const ReferenceProgress& progress) {
+                report(i * goal.samples + progress.samples, 2 * goal.samples);
+            };
+        Reference half = makeReference(spec, goal, options);
+        halves[i] = std::move(half.image);
+        frame->cached = frame->cached && half.cached;
+    }
+    frame->image = meanOf(halves[0], halves[1]);
+    frame->half = std::move(halves[0]);
+    const float exposure = metricExposure(problem);
+    for (const std::string& metric : study_.metrics)
+        frame->floor[metric] = measured(metric, frame->half, frame->image, exposure);
+    frame->floor["mse"] = measured("mse", frame->half, frame->image, exposure);
+    return frame;
+}
+
+}  // namespace lumi

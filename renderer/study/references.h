@@ -1,0 +1,55 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <list>
+#include <map>
+#include <memory>
+#include <stop_token>
+#include <string>
+
+#include "base/messages.h"
+#include "image/image.h"
+#include "session/document.h"
+#include "study/study.h"
+
+namespace lumi {
+
+/// What a measured frame is compared with.
+struct StudyReferenceFrame {
+    std::string key;  ///< eight hexadecimal digits: of all that defines the image
+    Image image;  ///< the mean of two halves, which are renderings with independent random numbers
+    Image half;   ///< the first of them
+    /// What each metric says of `half` against `image`. For the means of squares that is the reference's own error, since
+    /// half - image = (half - other half) / 2 has the variance of the mean; for the others it is the least difference
+    /// that means anything.
+    std::map<std::string, double> floor;
+    bool cached = false;
+};
+
+/// References by scene, time and what defines the image, from the cache or traced; the last few stay in memory.
+class StudyReferences {
+public:
+    using Report = std::function<void(uint64_t samples, uint64_t target)>;
+    StudyReferences(const Study& study, std::filesystem::path cache, MessageLog& log)
+        : study_(study), cache_(std::move(cache)), log_(log) {}
+
+    /// `document`: what is to be converged, at the frame's time. Throws Error(Interrupted).
+    std::shared_ptr<const StudyReferenceFrame> get(const Document& document, std::stop_token stop, const Report& report = {});
+
+private:
+    struct Kept {
+        std::string key;
+        std::shared_ptr<const StudyReferenceFrame> frame;
+    };
+    std::shared_ptr<StudyReferenceFrame> make(const Document& problem, std::stop_token stop, const Report& report);
+
+    const Study& study_;
+    std::filesystem::path cache_;
+    MessageLog& log_;
+    std::list<Kept> kept_;
+};
+
+/// The exposure at which metrics see images of a document.
+float metricExposure(const Document& document);
+
+}  // namespace lumi

@@ -1,0 +1,166 @@
+#include "study/report.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "base/isa.h"
+#include "measure/measure.h"
+#include "study/report_resources.h"
+#include "study/run_job.h"
+#include "study/temporal_metrics.h"
+
+namespace lumi {
+using Json = nlohmann::ordered_json;
+namespace {
+
+std::string escaped(const std::string& text) {
+    std::string out;
+    for (const char c : text) switch (c) {
+            case '&': out += "&amp;"; break;
+            case '<': out += "&lt;"; break;
+            case '>': out += "&gt;"; break;
+            case '"': out += "&quot;"; break;
+            default: out += c;
+        }
+    return out;
+}
+
+/// JSON that may stand in a script element: nothing in it closes the element.
+std::string scriptJson(const Json& value) {
+    const std::string text = value.dump();
+    std::string out;
+    out.reserve(text.size());
+    for (size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '<') out += "\\u003c";
+        else out += text[i];
+    }
+    return out;
+}
+
+std::string framesText(const Study& study) {
+    const auto& measure = study.frames.measure;
+    if (measure.size() == 1) return fmt::format("frame {}", measure.front());
+    if (measure.size() == static_cast<size_t>(measure.back() - measure.front() + 1))
+        return fmt::format("frames {} to {}", measure.front(), measure.back());
+    std::string text = "frames";
+    for (size_t i = 0; i < measure.size(); ++i) text += (i ? ", " : " ") + std::to_string(measure[i]);
+    return text;
+}
+
+template <class List>
+std::string joined(const List& list) {
+    std::string text;
+    for (const auto& item : list) text += (text.empty() ? "" : ", ") + fmt::format("{}", item);
+    return text;
+}
+
+std::string facts(const Study& study, const StudyRecords& records) {
+    std::string size = "the scene's";
+    if (study.size.width > 0) size = fmt::format("{} × {}", study.size.width, study.size.height);
+    std::string scenes;
+    for (const StudyScene& scene : study.scenes) scenes += (scenes.empty() ? "" : ", ") + scene.name;
+    const std::pair<std::string, std::string> all[] = {{"Preset", study.preset.empty() ? "none" : study.preset},
+                                                       {"Scenes", scenes},
+                                                       {"Image size", size},
+                                                       {"Measured", framesText(study)},
+                                                       {"Samples a pixel", joined(study.spp)},
+                                                       {"Seeds", joined(study.seeds)},
+                                                       {"Reference", fmt::format("{} spp", study.reference.spp)},
+                                                       {"Images measured", std::to_string(records.rows.size())}};
+    std::string html;
+    for (const auto& [name, value] : all) html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", name, escaped(value));
+    return html;
+}
+
+Json studyData(const Study& study, const StudyPlan& plan) {
+    Json methods = Json::array();
+    for (const StudyMethod& method : plan.methods) {
+        Json set = Json::array();
+        for (const StudyValue& value : method.set) set.push_back(value.id + " = " + value.text);
+        methods.push_back({{"name", method.name}, {"entry", study.entries[method.entry].name},
+                           {"module", study.entries[method.entry].module}, {"set", std::move(set)},
+                           {"coordinates", method.coordinates}});
+    }
+    Json axes = Json::array();
+    if (study.sweep)
+        for (const StudyAxis& axis : study.sweep->axes) axes.push_back({{"id", axis.id}, {"values", axis.values}});
+    return {{"seeds", study.seeds}, {"level", study.intervals.level}, {"frames", framesText(study)},
+            {"temporal_begin", study.frames.temporalBegin}, {"axes", std::move(axes)}, {"methods", std::move(methods)}};
+}
+
+Json metricData(const Study& study) {
+    Json all = Json::object();
+    for (const std::string& id : study.metrics) {
+        const Metric& metric = findMetric(id);
+        all[id] = {{"title", metric.title}, {"definition", metric.definition}, {"higher", metric.higherIsBetter},
+                   {"temporal", false}};
+        all[id]["squared"] = !isSquaredError(id) ? Json(false) : Json(id == "rmse" ? "root" : "mean");
+    }
+    for (const std::string& id : study.temporalMetrics) {
+        const TemporalMetric& metric = *findTemporalMetric(id);
+        all[id] = {{"title", metric.title}, {"definition", metric.definition}, {"higher", false}, {"temporal", true},
+                   {"squared", false}};
+    }
+    return all;
+}
+
+/// Metrics of consecutive frames, means over the seeds.
+Json seriesData(const Study& study, const StudyPlan& plan, const StudyRecords& records) {
+    std::map<std::tuple<size_t, int, std::string, size_t>, std::pair<std::vector<double>, int>> sums;
+    for (const StudySeries& one : records.series) {
+        auto& [sum, count] = sums[{one.scene, one.spp, one.metric, one.method}];
+        sum.resize(one.values.size());
+        for (size_t i = 0; i < sum.size(); ++i) sum[i] += one.values[i];
+        ++count;
+    }
+    Json list = Json::array();
+    for (auto& [key, entry] : sums) {
+        for (double& value : entry.first) value /= entry.second;
+        list.push_back({{"scene", study.scenes[std::get<0>(key)].name}, {"spp", std::get<1>(key)}, {"metric", std::get<2>(key)},
+                        {"entry", plan.methods[std::get<3>(key)].name}, {"values", entry.first}});
+    }
+    return list;
+}
+
+/// Puts values in the place of {{name}}; what is put in is not looked at again.
+std::string filled(const std::string& page, const std::map<std::string, std::string>& values) {
+    std::string out;
+    for (size_t at = 0; at < page.size();) {
+        const size_t open = page.find("{{", at), close = page.find("}}", open);
+        if (open == std::string::npos || close == std::string::npos) return out + page.substr(at);
+        out += page.substr(at, open - at) + values.at(page.substr(open + 2, close - open - 2));
+        at = close + 2;
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string studyReport(const Study& study, const StudyPlan& plan, const StudyRecords& records, const Json& results,
+                        const Json& times) {
+    Json shown = results;
+    shown.erase("rows");  // the tables need the summaries only; the rows stand in results.csv
+    const Json data = {{"study", studyData(study, plan)}, {"results", std::move(shown)}, {"times", times},
+                       {"pictures", reportPictures(study, plan, records)}, {"series", seriesData(study, plan, records)},
+                       {"metrics", metricData(study)}};
+    const std::string command = fmt::format("lumiscope study {}{}", study.path.string(),
+                                            study.preset.empty() ? "" : " --preset " + study.preset);
+    const std::string kicker = "Study" + (study.paper.empty() ? "" : " after " + study.paper);
+    return filled(kReportHtml,
+                  {{"title", escaped(study.title)},
+                   {"kicker", escaped(kicker)},
+                   {"description", study.description.empty() ? "" : "<p class=\"lead\">" + escaped(study.description) + "</p>"},
+                   {"facts", facts(study, records)},
+                   {"footer", fmt::format("Made by <code>{}</code> · instruction set {} · study file {}. Numbers of every image "
+                                          "stand in results.csv and results.json beside this file.",
+                                          escaped(command), isaName(activeIsa()), study.digest)},
+                   {"css", kReportCss},
+                   {"data", scriptJson(data)},
+                   {"charts", kChartsJs},
+                   {"viewer", kViewerJs},
+                   {"report", kReportJs}});
+}
+
+}  // namespace lumi

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace lumi {
+
+/// The files of renderer/study/report/, part of the program so that it needs nothing beside it.
+extern const char* const kReportHtml;
+extern const char* const kReportCss;
+extern const char* const kChartsJs;
+extern const char* const kViewerJs;
+extern const char* const kReportJs;
+
+}  // namespace lumi

@@ -1,0 +1,117 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "math/vector.h"
+
+namespace lumi {
+
+/// A parameter's id and its value in the form of the command line, with the place in the study file it came from.
+struct StudyValue {
+    std::string id, text;
+    std::string where;
+};
+
+/// Values that one parameter takes in turn: a sweep's axis, or what tuning chooses from.
+struct StudyAxis {
+    std::string id;  ///< of the entries' module (`sigma-l`), or of the document (`path.max-depth`)
+    std::vector<std::string> values;
+    std::string where;
+};
+
+struct StudyScene {
+    std::string name;    ///< in results; unique in a study
+    std::string source;  ///< a built-in name, a path (relative to the study file too), or `assets:` and a path there
+    bool optional = false;  ///< left out, with a warning, where it is not found
+    std::vector<StudyValue> set;
+    std::string where;
+};
+
+/// One method: a module with parameters, or the same module on other samples.
+struct StudyEntry {
+    std::string name;    ///< in results; unique in a study
+    std::string module;  ///< id of the catalogue
+    std::vector<StudyValue> set;
+    std::vector<StudyAxis> tune;  ///< chosen for each scene among all combinations; see StudyTuning
+    std::vector<int> spp;         ///< instead of the study's; empty: those
+};
+
+/// Frames [begin, end) run in order from an empty history; some are measured.
+struct StudyFrames {
+    int64_t begin = 0, end = 1;
+    std::vector<int64_t> measure{0};              ///< ascending, within the range
+    int64_t temporalBegin = 0, temporalEnd = 0;   ///< frames whose difference to the one before is measured
+    bool still = false;                           ///< time stands at the first frame
+    float fps = 0;                                ///< 0: the scene's
+};
+
+struct StudyReference {
+    int spp = 1024;               ///< in two halves of independent random numbers
+    std::vector<StudyValue> set;  ///< on top of the study's values that define the image
+};
+
+struct StudySweep {
+    std::vector<StudyAxis> axes;       ///< one or two
+    std::vector<std::string> entries;  ///< swept; empty: all
+};
+
+/// How parameters under "tune" are chosen: the combination with the best metric on one frame that is not measured.
+struct StudyTuning {
+    int64_t frame = 0;
+    std::string metric = "rmse";
+    int seed = 0;
+};
+
+/// "What would `against` reach in the time of `entry`, and how long would it take to reach its error?"
+struct StudyPair {
+    std::string entry, against;
+};
+
+/// How the uncertainty of a number is found.
+struct StudyIntervals {
+    enum class Units { Seeds, FramesAndSeeds };
+    enum class Method { StudentT, Bootstrap };
+    double level = 0.95;
+    Units units = Units::Seeds;
+    Method method = Method::StudentT;
+};
+
+/// Which images the report shows.
+struct StudyPictures {
+    std::vector<int64_t> frames;  ///< empty: the last that is measured
+    std::vector<int> spp;         ///< empty: the first and the last
+    std::string errorMap = "flip";
+};
+
+/// A study file with one preset applied.
+struct Study {
+    std::filesystem::path path;
+    std::string name;    ///< the file's, without folder and extension
+    std::string digest;  ///< of the file's bytes
+    std::string preset;
+    std::string title, paper, description;
+    std::vector<StudyScene> scenes;
+    std::vector<StudyEntry> entries;
+    std::vector<StudyValue> set;  ///< of the document, for every entry and reference
+    Extent2 size{0, 0};           ///< 0: the scene's
+    StudyFrames frames;
+    std::vector<int> spp{1}, seeds{1};
+    StudyReference reference;
+    std::vector<std::string> metrics;          ///< of images, as `list metrics` names them
+    std::vector<std::string> temporalMetrics;  ///< of consecutive frames
+    std::optional<StudySweep> sweep;
+    std::optional<StudyTuning> tuning;
+    std::vector<StudyPair> pairs;
+    StudyIntervals intervals;
+    StudyPictures pictures;
+
+    const StudyEntry* entry(const std::string& name) const;
+};
+
+/// Seeds of a reference's two halves; a study's own seeds are below.
+inline constexpr int kReferenceSeed = 900'000'001;
+
+}  // namespace lumi

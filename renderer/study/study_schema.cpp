@@ -1,0 +1,136 @@
+#include <nlohmann/json.hpp>
+
+#include "measure/measure.h"
+#include "study/study_file.h"
+#include "study/temporal_metrics.h"
+
+namespace lumi {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json text(const char* help) { return {{"type", "string"}, {"description", help}}; }
+Json whole(int64_t min, int64_t max, const char* help) {
+    return {{"type", "integer"}, {"minimum", min}, {"maximum", max}, {"description", help}};
+}
+Json listOf(Json item, const char* help, int least = 1) {
+    return {{"type", "array"}, {"items", std::move(item)}, {"minItems", least}, {"description", help}};
+}
+/// One whole number, or several that differ.
+Json wholes(int64_t min, int64_t max, const char* help) {
+    Json one = {{"type", "integer"}, {"minimum", min}, {"maximum", max}};
+    Json many = listOf(one, help);
+    many["uniqueItems"] = true;
+    return {{"description", help}, {"anyOf", {one, std::move(many)}}};
+}
+Json closed(Json properties, const char* help, std::vector<std::string> required = {}) {
+    Json schema = {{"type", "object"}, {"description", help}, {"properties", std::move(properties)},
+                   {"additionalProperties", false}};
+    if (!required.empty()) schema["required"] = required;
+    return schema;
+}
+Json mapOf(Json entry, const char* help) {
+    return {{"type", "object"}, {"description", help}, {"additionalProperties", std::move(entry)}};
+}
+Json reference(const char* name) { return {{"$ref", std::string("#/$defs/") + name}}; }
+Json oneOfNames(const std::vector<std::string>& names, const char* help) { return {{"enum", names}, {"description", help}}; }
+
+std::vector<std::string> metricIds(bool temporal, bool mapsOnly = false) {
+    std::vector<std::string> ids;
+    for (const Metric& metric : metricCatalog())
+        if (!mapsOnly || metric.mapColours) ids.emplace_back(metric.id);
+    if (temporal)
+        for (const TemporalMetric& metric : temporalMetricCatalog()) ids.emplace_back(metric.id);
+    return ids;
+}
+
+Json sceneSchema() {
+    const char* help = "A built-in name, a path relative to this file, or assets: and a path under $LUMISCOPE_ASSETS.";
+    Json full = closed({{"scene", text(help)},
+                        {"name", text("What results call it; by default the name of its file.")},
+                        {"optional", {{"type", "boolean"}, {"description", "Left out, with a warning, where it is not found."}}},
+                        {"set", reference("values")}},
+                       "A scene with parameters.", {"scene"});
+    return {{"anyOf", {text(help), std::move(full)}}};
+}
+
+Json entrySchema() {
+    return closed({{"name", text("What results call it; by default the module's id.")},
+                   {"module", text("Which method, as `lumiscope list modules` names it.")},
+                   {"set", reference("values")},
+                   {"tune", reference("axes")},
+                   {"spp", wholes(1, 65536, "Samples a pixel and frame, instead of the study's.")}},
+                  "A method with parameters: ids of its module, or ids with a dot of the document.", {"module"});
+}
+
+Json framesSchema() {
+    constexpr int64_t last = 10'000'000;
+    Json pair = listOf({{"type", "integer"}, {"minimum", 0}}, "First frame, and the one after the last.", 2);
+    pair["maxItems"] = 2;
+    return closed({{"range", pair},
+                   {"measure", {{"description", "Frames that are compared with a reference; by default the last."},
+                                {"anyOf", {wholes(0, last, "Frame numbers."), Json{{"const", "all"}}}}}},
+                   {"temporal", pair},
+                   {"still", {{"type", "boolean"}, {"description", "Time stands at the first frame."}}},
+                   {"fps", {{"type", "number"}, {"minimum", 0.1}, {"maximum", 1000}, {"description", "Frames a second; by default the scene's."}}}},
+                  "Frames run in order from an empty history; by default one.");
+}
+
+/// What a preset may change.
+Json bodySchema() {
+    Json all;
+    Json size = listOf({{"type", "integer"}, {"minimum", 1}, {"maximum", 16384}}, "Width and height of the images; by default the scene's.", 2);
+    size["maxItems"] = 2;
+    all["size"] = size;
+    all["scenes"] = listOf(sceneSchema(), "What is rendered.");
+    all["frames"] = framesSchema();
+    all["spp"] = wholes(1, 65536, "Samples a pixel and frame.");
+    all["seeds"] = wholes(0, kReferenceSeed - 1, "Sets of random numbers; two or more give intervals.");
+    all["set"] = reference("values");
+    all["entries"] = listOf(entrySchema(), "The methods that are compared.");
+    all["reference"] = closed({{"spp", {{"type", "integer"}, {"minimum", 32}, {"maximum", 1 << 20}, {"multipleOf", 32},
+                                        {"description", "Samples a pixel, in two halves of independent random numbers."}}},
+                               {"set", reference("values")}},
+                              "What images are compared with.");
+    all["metrics"] = listOf(oneOfNames(metricIds(true), "As `lumiscope list metrics` names them."), "What is measured.");
+    all["sweep"] = closed({{"axes", reference("axes")}, {"entries", listOf(text("An entry's name."), "Which are swept; by default all.")}},
+                          "Entries run with every combination of one or two parameters' values.", {"axes"});
+    all["tuning"] = closed({{"frame", whole(0, 10'000'000, "A frame that is not measured.")},
+                            {"metric", oneOfNames(metricIds(false), "What the best has best.")},
+                            {"seed", whole(0, kReferenceSeed - 1, "Random numbers of the tuning frames.")}},
+                           "How values under an entry's \"tune\" are chosen, for each scene.", {"frame"});
+    all["pairs"] = listOf(closed({{"entry", text("An entry.")}, {"against", text("The entry it is held against.")}}, "A pair.",
+                                 {"entry", "against"}),
+                          "Equal time, equal error and equivalent samples between entries.", 0);
+    all["intervals"] = closed({{"level", {{"type", "number"}, {"minimum", 0.5}, {"maximum", 0.9999}, {"default", 0.95}}},
+                               {"units", oneOfNames({"seeds", "frames-and-seeds"}, "What counts as an independent measurement.")},
+                               {"method", oneOfNames({"student-t", "bootstrap"}, "How intervals are found.")}},
+                              "How uncertainty is told.");
+    all["pictures"] = closed({{"frames", wholes(0, 10'000'000, "Frames shown; by default the last that is measured.")},
+                              {"spp", wholes(1, 65536, "Sample counts shown; by default the least and the most.")},
+                              {"error-map", oneOfNames(metricIds(false, true), "Metric of the error maps.")}},
+                             "Images of the report.");
+    return all;
+}
+
+}  // namespace
+
+std::string studyFileSchema() {
+    Json top = {{"$schema", text("This schema.")}, {"version", {{"const", 1}}}, {"title", text("Shown in lists and reports.")},
+                {"paper", text("Bibliography key of the paper whose figure it is.")},
+                {"description", text("What the study asks.")}};
+    const Json body = bodySchema();
+    for (const auto& [key, value] : body.items()) top[key] = value;
+    top["presets"] = mapOf(reference("preset"), "Sizes of the study by name: what stands here takes the study's place.");
+    Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Lumiscope study"}};
+    schema.update(closed(std::move(top), "A study: scenes, methods, samples and metrics.", {"version"}));
+    Json preset = closed(body, "Objects are merged member by member; everything else is replaced.");
+    // A preset changes single members of objects, whose required ones stand in the study.
+    for (const char* key : {"sweep", "tuning"}) preset["properties"][key].erase("required");
+    schema["$defs"]["preset"] = std::move(preset);
+    schema["$defs"]["values"] = mapOf({{"type", {"number", "boolean", "string", "array"}}}, "Parameter ids and their values.");
+    schema["$defs"]["axes"] = mapOf(listOf({{"type", {"number", "boolean", "string", "array"}}}, "Values in turn."), "Parameter ids and the values they take.");
+    return schema.dump(2) + "\n";
+}
+
+}  // namespace lumi

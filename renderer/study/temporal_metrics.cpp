@@ -1,0 +1,44 @@
+#include "study/temporal_metrics.h"
+
+#include "measure/temporal.h"
+
+namespace lumi {
+namespace {
+
+TemporalPair pairOf(const TemporalInput& input) {
+    TemporalPair pair{input.image, input.previous};
+    pair.motion = &input.signals[Signal::Motion];
+    pair.depth = &input.signals[Signal::Depth];
+    pair.previousDepth = &input.previousSignals[Signal::Depth];
+    pair.exposureEv = input.exposureEv;
+    return pair;
+}
+
+double (*measureOf(const std::string& id))(const TemporalInput&) {
+    if (id == "temporal") return [](const TemporalInput& input) { return measureTemporal(pairOf(input), false).value; };
+    if (id == "temporal_reprojected")
+        return [](const TemporalInput& input) { return measureReprojectedTemporal(pairOf(input), false).value; };
+    return nullptr;
+}
+
+}  // namespace
+
+const std::vector<TemporalMetric>& temporalMetricCatalog() {
+    static const std::vector<TemporalMetric> catalog = [] {
+        std::vector<TemporalMetric> list;
+        for (const SequenceMetric& metric : sequenceMetricCatalog())
+            if (const auto measure = measureOf(metric.id)) list.push_back({metric.id, metric.title, metric.definition, measure});
+        return list;
+    }();
+    return catalog;
+}
+
+const TemporalMetric* findTemporalMetric(const std::string& id) {
+    for (const TemporalMetric& metric : temporalMetricCatalog())
+        if (id == metric.id) return &metric;
+    return nullptr;
+}
+
+SignalSet temporalSignals() { return {Signal::Motion, Signal::Depth}; }
+
+}  // namespace lumi

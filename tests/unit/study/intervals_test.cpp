@@ -1,0 +1,140 @@
+#include "study/intervals.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "math/hash.h"
+
+namespace lumi::test {
+namespace {
+
+/// Uniform in [0,1), of a fixed stream.
+double uniform(uint64_t index) { return static_cast<double>(mixBits(index) >> 11) * 0x1p-53; }
+
+/// A normal deviate from twelve uniform ones would have short tails; the polar form has none of that.
+double normal(uint64_t index) {
+    return std::sqrt(-2 * std::log(1 - uniform(2 * index))) * std::cos(2 * M_PI * uniform(2 * index + 1));
+}
+
+TEST(Intervals, AreStudentsOwn) {
+    // Mean 5, deviations -2 -1 0 1 2: s^2 = 2.5, standard error sqrt(0.5), t(0.025, 4) = 2.77645.
+    const std::vector<double> values{3, 4, 5, 6, 7};
+    const Interval interval = meanInterval(values, 0.95);
+    EXPECT_DOUBLE_EQ(interval.mean, 5);
+    EXPECT_NEAR(interval.standardError, std::sqrt(0.5), 1e-12);
+    EXPECT_NEAR(interval.high - 5, 2.77645 * std::sqrt(0.5), 1e-5);
+    EXPECT_NEAR(5 - interval.low, 2.77645 * std::sqrt(0.5), 1e-5);
+    EXPECT_TRUE(interval.excludesZero());
+}
+
+TEST(Intervals, OneValueSaysNothingOfItsNoise) {
+    const Interval one = meanInterval(std::vector<double>{3}, 0.95);
+    EXPECT_EQ(one.mean, 3);
+    EXPECT_FALSE(one.known());
+    EXPECT_TRUE(std::isnan(one.low));
+    EXPECT_FALSE(one.excludesZero());
+    EXPECT_TRUE(std::isnan(meanInterval({}, 0.95).mean));
+}
+
+/// Nineteen of twenty intervals hold the true mean, by either method.
+TEST(Intervals, HoldTheTrueMeanAsOftenAsTheySay) {
+    constexpr int trials = 1000, size = 12;
+    for (const IntervalMethod method : {IntervalMethod::StudentT, IntervalMethod::Bootstrap}) {
+        int held = 0;
+        for (int t = 0; t < trials; ++t) {
+            std::vector<double> values(size);
+            for (int i = 0; i < size; ++i) values[static_cast<size_t>(i)] = 2 + normal(static_cast<uint64_t>(t * size + i));
+            const Interval interval = meanInterval(values, 0.95, method);
+            held += interval.low <= 2 && 2 <= interval.high;
+        }
+        // Twelve values are few for a bootstrap, which comes out a little short.
+        EXPECT_NEAR(held / double(trials), method == IntervalMethod::StudentT ? 0.95 : 0.92, 0.025);
+    }
+}
+
+TEST(Intervals, PairsRemoveWhatBothShare) {
+    // Differences 1, 1, 1.2: clearly above 0, though the values themselves spread over ten.
+    const std::vector<double> a{11, 1, 6.2}, b{10, 0, 5};
+    EXPECT_TRUE(pairedInterval(a, b, 0.95).excludesZero());
+    EXPECT_FALSE(pairedInterval(a, std::vector<double>{0, 10, 5}, 0.95).excludesZero());
+}
+
+TEST(Ranks, AreGivenOnlyWhereTheNoiseAllows) {
+    // Two that nobody can tell apart, and one far behind.
+    const std::vector<std::vector<double>> errors{{1.0, 1.2, 0.9, 1.1}, {1.1, 1.0, 1.1, 0.9}, {5.0, 5.2, 4.9, 5.1}};
+    const std::vector<Rank> ranks = rankMethods(errors, false, 0.95);
+    EXPECT_EQ(ranks[0].best, 1);
+    EXPECT_EQ(ranks[0].worst, 2);
+    EXPECT_EQ(ranks[1].best, 1);
+    EXPECT_EQ(ranks[1].worst, 2);
+    EXPECT_EQ(ranks[2].best, 3);
+    EXPECT_TRUE(ranks[2].certain());
+    // Where higher is better the order turns round.
+    EXPECT_EQ(rankMethods(errors, true, 0.95)[2].best, 1);
+    EXPECT_TRUE(rankMethods(errors, true, 0.95)[2].certain());
+}
+
+TEST(Ranks, OfOneSeedOrOfEqualImagesAreNone) {
+    for (const auto& values : {std::vector<std::vector<double>>{{1}, {2}}, {{1, 2, 3}, {1, 2, 3}}})
+        for (const Rank& rank : rankMethods(values, false, 0.95)) {
+            EXPECT_EQ(rank.best, 1);
+            EXPECT_EQ(rank.worst, 2);
+        }
+}
+
+/// Of equal methods fewer than one table in twenty may show a difference, however many methods there are.
+TEST(Ranks, AllPairsTogetherKeepTheLevel) {
+    constexpr int tables = 400, methods = 5, seeds = 6;
+    int wrong = 0;
+    for (int t = 0; t < tables; ++t) {
+        std::vector<std::vector<double>> values(methods, std::vector<double>(seeds));
+        uint64_t index = static_cast<uint64_t>(t) * methods * seeds;
+        for (auto& method : values)
+            for (double& value : method) value = normal(++index);
+        bool any = false;
+        for (const Rank& rank : rankMethods(values, false, 0.95)) any |= rank.best != 1 || rank.worst != methods;
+        wrong += any;
+    }
+    EXPECT_LE(wrong / double(tables), 0.07);
+    EXPECT_GT(wrong, 0) << "a test that never fires tells nothing";
+}
+
+/// Pixels with a known offset and known noise, a reference with noise of its own.
+TEST(BiasAndVariance, ComeApart) {
+    constexpr size_t pixels = 20000, seeds = 4;
+    constexpr double bias = 0.3, sigma = 0.5, referenceSigma = 0.2;
+    std::vector<double> squared(seeds, 0.0);
+    double squaredMean = 0;
+    for (size_t p = 0; p < pixels; ++p) {
+        const double reference = referenceSigma * normal(p);
+        double sum = 0;
+        for (size_t k = 0; k < seeds; ++k) {
+            const double error = bias + sigma * normal((k + 1) * pixels + p) - reference;
+            squared[k] += error * error / pixels;
+            sum += error;
+        }
+        squaredMean += sum * sum / (seeds * seeds) / pixels;
+    }
+    const BiasVariance parts = separateBias(squared, squaredMean, referenceSigma * referenceSigma);
+    EXPECT_NEAR(parts.squaredBias, bias * bias, 0.006);
+    EXPECT_NEAR(parts.variance, sigma * sigma, 0.006);
+    EXPECT_NEAR(parts.meanSquaredError, bias * bias + sigma * sigma, 0.01);
+    EXPECT_TRUE(std::isnan(separateBias(std::vector<double>{1}, 1, 0).variance)) << "one seed cannot tell";
+}
+
+TEST(Slopes, AreThoseOfPowers) {
+    const std::vector<double> n{1, 4, 16, 64};
+    std::vector<double> error;
+    for (const double x : n) error.push_back(3 / std::sqrt(x));
+    EXPECT_NEAR(logLogSlope(n, error), -0.5, 1e-12);
+    EXPECT_TRUE(std::isnan(logLogSlope(n, std::vector<double>{1, 1, 0, 1})));
+    EXPECT_TRUE(std::isnan(logLogSlope(std::vector<double>{2, 2}, std::vector<double>{1, 3})));
+    EXPECT_NEAR(logLogAt(n, error, 8), 3 / std::sqrt(8.0), 1e-12);
+    EXPECT_EQ(logLogAt(n, error, 4), error[1]);
+    EXPECT_TRUE(std::isnan(logLogAt(n, error, 65)));
+}
+
+}  // namespace
+}  // namespace lumi::test

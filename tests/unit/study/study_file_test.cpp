@@ -1,0 +1,128 @@
+#include "study/study_file.h"
+
+#include <gtest/gtest.h>
+
+#include "support/expect_error.h"
+
+namespace lumi::test {
+namespace {
+
+Study parse(const std::string& text, const std::string& preset = "") { return parseStudy(text, "folder/t.json", preset); }
+
+/// A study whose one interesting member is `member`.
+std::string withMember(const std::string& member, const std::string& entry = R"({"module": "none"})") {
+    return "{\"version\": 1, \"scenes\": [\"cornell\"],\n \"entries\": [" + entry + "],\n " + member + "}";
+}
+
+void refused(const std::string& text, const std::initializer_list<std::string>& parts) {
+    expectError(ErrorKind::BadInput, [&] { parse(text); }, parts);
+}
+
+TEST(StudyFile, TheLeastStudyHasDefaults) {
+    const Study study = parse(withMember("\"title\": \"T\""));
+    EXPECT_EQ(study.name, "t");
+    EXPECT_EQ(study.title, "T");
+    EXPECT_EQ(study.scenes.at(0).name, "cornell");
+    EXPECT_EQ(study.entries.at(0).name, "none");
+    EXPECT_EQ(study.spp, std::vector<int>{1});
+    EXPECT_EQ(study.frames.measure, std::vector<int64_t>{0});
+    EXPECT_EQ(study.metrics, std::vector<std::string>{"rmse"});
+    EXPECT_EQ(study.reference.spp, 1024);
+    EXPECT_EQ(study.digest.size(), 16u);
+}
+
+TEST(StudyFile, EverythingIsRead) {
+    const Study study = parse(R"({"version": 1, "title": "All", "paper": "Schied17", "description": "D",
+      "scenes": ["cornell", {"scene": "room", "name": "night", "optional": true, "set": {"camera.select": "main"}}],
+      "set": {"path.max-depth": 3}, "size": [320, 180],
+      "frames": {"range": [0, 64], "measure": [63, 40], "temporal": [20, 60], "still": true, "fps": 30},
+      "spp": [1, 4], "seeds": [7, 8], "reference": {"spp": 64, "set": {"path.max-depth": 9}},
+      "metrics": ["ssim", "mse"], "tuning": {"frame": 8, "metric": "mse", "seed": 5},
+      "entries": [{"name": "a", "module": "accumulate", "set": {"limit": true, "path.clamp": false}, "tune": {"max-samples": [2, 4]}},
+                  {"module": "none", "spp": 2}],
+      "sweep": {"axes": {"component": ["direct", "indirect"]}, "entries": ["none"]},
+      "pairs": [{"entry": "a", "against": "none"}],
+      "intervals": {"level": 0.9, "units": "frames-and-seeds", "method": "bootstrap"},
+      "pictures": {"frames": [40], "spp": [4], "error-map": "relmse"}})");
+    EXPECT_EQ(study.scenes[1].name, "night");
+    EXPECT_TRUE(study.scenes[1].optional);
+    EXPECT_EQ(study.scenes[1].set[0].id, "camera.select");
+    EXPECT_EQ(study.frames.measure, (std::vector<int64_t>{40, 63}));
+    EXPECT_EQ(study.frames.temporalBegin, 20);
+    EXPECT_EQ(study.entries[0].set[0].text, "true");
+    EXPECT_EQ(study.entries[0].tune[0].values, (std::vector<std::string>{"2", "4"}));
+    EXPECT_EQ(study.entries[1].spp, std::vector<int>{2});
+    EXPECT_EQ(study.sweep->axes[0].id, "component");
+    EXPECT_EQ(study.tuning->seed, 5);
+    EXPECT_EQ(study.intervals.units, StudyIntervals::Units::FramesAndSeeds);
+    EXPECT_EQ(study.intervals.method, StudyIntervals::Method::Bootstrap);
+    EXPECT_EQ(study.pictures.errorMap, "relmse");
+    EXPECT_EQ(study.reference.set[0].text, "9");
+}
+
+TEST(StudyFile, APresetTakesTheStudysPlace) {
+    const std::string text = withMember(R"("reference": {"spp": 64, "set": {"path.max-depth": 2}}, "seeds": [1, 2],
+      "presets": {"quick": {"reference": {"spp": 32}, "size": [16, 9]}, "paper": {"seeds": [1, 2, 3]}})");
+    const Study quick = parse(text, "quick"), paper = parse(text, "paper"), none = parse(text);
+    EXPECT_EQ(quick.reference.spp, 32);
+    EXPECT_EQ(quick.reference.set.size(), 1u) << "objects are merged member by member";
+    EXPECT_EQ(quick.size, (Extent2{16, 9}));
+    EXPECT_EQ(paper.reference.spp, 64);
+    EXPECT_EQ(paper.seeds.size(), 3u);
+    EXPECT_EQ(none.size.width, 0);
+    expectError(ErrorKind::Usage, [&] { parse(text, "qick"); }, {"has no preset \"qick\"", "--preset", "\"quick\""});
+}
+
+TEST(StudyFile, ErrorsNamePlaceAndNearestKey) {
+    refused("[1]", {"folder/t.json:1:1", "is not a study file"});
+    refused("{\"version\": 2}", {":1:13", "\"version\" is 2", "expected 1"});
+    refused("{\"version\": 1}", {"\"study\" has no \"scenes\""});
+    refused(withMember("\"seds\": [1]"), {"t.json:3:2", "unknown key \"seds\"", "\"seeds\""});
+    refused(withMember("\"spp\": [0]"), {":3:10", "\"spp\" is 0", "from 1 to 65536"});
+    refused(withMember("\"seeds\": [1, 1]"), {"has 1 twice", ":3:15"});
+    refused(withMember("\"metrics\": [\"rsme\"]"), {"unknown metric \"rsme\"", "\"rmse\"", ":3:14"});
+    refused(withMember("\"size\": [16]"), {"\"size\"", "[width, height]"});
+    refused(withMember("\"frames\": {\"range\": [0, 4], \"measure\": [4]}"), {"\"measure\"", "frames from 0 to 3"});
+    refused(withMember("\"frames\": {\"range\": [4, 4]}"), {"4"});
+    refused(withMember("\"reference\": {\"spp\": 48}"), {"multiple of 32"});
+    refused(withMember("\"scenes\": []"), {"stands twice"});
+    refused(withMember("\"pairs\": [{\"entry\": \"nonne\", \"against\": \"none\"}]"), {"unknown entry \"nonne\"", "\"none\""});
+    refused(withMember("\"presets\": {\"quick\": {\"title\": \"x\"}}"), {"a preset cannot change \"title\""});
+    refused(withMember("\"presets\": {\"quick\": {\"spp\": 0}}"), {"\"spp\" is 0"});
+}
+
+TEST(StudyFile, ModuleParametersAreCheckedAgainstTheCatalogue) {
+    const auto entry = [](const std::string& text) { return withMember("\"title\": \"\"", text); };
+    refused(entry(R"({"module": "acumulate"})"), {"unknown module \"acumulate\"", "\"accumulate\"", ":2:25"});
+    refused(entry(R"({"module": "accumulate", "set": {"limitt": true}})"),
+            {"module \"accumulate\" has no parameter \"limitt\"", "\"limit\"", ":2:"});
+    refused(entry(R"({"module": "accumulate", "set": {"max-samples": -1}})"), {"max-samples", "-1", ":2:"});
+    refused(entry(R"({"module": "accumulate", "tune": {"max-samples": [1, 2]}})"), {"nothing says on which frame"});
+    refused(entry(R"({"module": "none"}, {"module": "none"})"), {"two entries are called \"none\""});
+    refused(withMember(R"("sweep": {"axes": {"component": ["direct", "indrect"]}})"), {"indrect", ":3:"});
+    refused(withMember(R"("sweep": {"axes": {}})"), {"one or two axes"});
+    refused(withMember(R"("tuning": {"frame": 0}, "frames": {"range": [0, 2], "measure": [0]})"), {"a frame that is not measured"});
+}
+
+TEST(StudyFile, BrokenJsonIsOneLineWithItsPlace) {
+    for (const std::string text : {"", "{", "{\"version\": 1,", "\xff", "{\"version\": 1}}", "null"})
+        expectError(ErrorKind::BadInput, [&] { parse(text); }, {"folder/t.json:1:"});
+}
+
+TEST(StudyFile, EveryShippedStudyIsGoodAtEveryPreset) {
+    const std::vector<StudyListing> studies = listStudies();
+    EXPECT_GE(studies.size(), 2u);
+    for (const StudyListing& listing : studies) {
+        EXPECT_NE(listing.title, listing.name) << listing.path;
+        for (const std::string preset : {"quick", "paper"}) {
+            const Study study = loadStudy(listing.path, preset);
+            for (const StudyScene& scene : study.scenes)
+                EXPECT_TRUE(scene.optional || !findStudyScene(study, scene).empty());
+        }
+    }
+    expectError(ErrorKind::Usage, [] { findStudy("convergense"); }, {"unknown study", "\"convergence\""});
+    expectError(ErrorKind::BadInput, [] { findStudy("no/such.json"); }, {"no such file"});
+}
+
+}  // namespace
+}  // namespace lumi::test
