@@ -83,6 +83,7 @@ public:
         addReference();
         addMerge();
         addCompare();
+        addStudy();
         addBench();
         addInfo();
         addList();
@@ -228,6 +229,18 @@ private:
         app->footer(compareFooter());
     }
 
+    void addStudy() {
+        CLI::App* app = study_ = app_.add_subcommand("study", "Run a study: scenes, methods and metrics, with a report");
+        app->add_option("file", line_.study.file, "Study to run: a name or a path")->required()->type_name("FILE");
+        app->add_option("--preset", line_.study.preset, "Size of the study: quick (if it has that), paper, or another")
+            ->type_name("NAME")->take_last();
+        app->add_option("--out", line_.study.out, "Folder for results, resumed if it holds some (<study>-<preset>)")
+            ->type_name("DIR")->take_last();
+        addProgress(*app);
+        addMachine(*app, line_.machine, true);
+        app->footer(studyFooter());
+    }
+
     void addBench() {
         CLI::App* app = bench_ = app_.add_subcommand("bench", "Measure this machine's speed against bare Embree");
         app->add_option("--filter", line_.filter, "Only entries in whose name this regular expression is found")
@@ -255,11 +268,11 @@ private:
     }
 
     void addList() {
-        CLI::App* app = list_ = app_.add_subcommand("list", "List what there is: scenes, modules, buffers, parameters, metrics");
-        app->add_option("what", line_.list.what, "scenes, modules, buffers, parameters or metrics")
+        CLI::App* app = list_ = app_.add_subcommand("list", "List what there is: scenes, modules, buffers, parameters, metrics, studies");
+        app->add_option("what", line_.list.what, "scenes, modules, buffers, parameters, metrics or studies")
             ->required()
             ->type_name("WHAT")
-            ->check(CLI::IsMember({"scenes", "modules", "buffers", "parameters", "metrics"}).description(""));
+            ->check(CLI::IsMember({"scenes", "modules", "buffers", "parameters", "metrics", "studies"}).description(""));
         app->add_option("--module", line_.list.module, "Only what belongs to this module")->type_name("INSTANCE");
         addMachine(*app, line_.machine, false);
         app->footer("Examples:\n  lumiscope list parameters --module accumulate\n  lumiscope list buffers --json");
@@ -291,6 +304,7 @@ private:
         else if (reference_->parsed()) finishReference();
         else if (merge_->parsed()) line_.command = Command::Merge;
         else if (compare_->parsed()) finishCompare();
+        else if (study_->parsed()) finishStudy();
         else if (bench_->parsed()) line_.command = Command::Bench;
         else if (info_->parsed()) finishInfo();
         else if (list_->parsed()) line_.command = Command::List;
@@ -355,6 +369,11 @@ private:
         line_.compare.quiet = line_.machine.quiet;
     }
 
+    void finishStudy() {
+        line_.command = Command::Study;
+        line_.study.progress = progress();
+    }
+
     void finishInfo() {
         line_.command = Command::Info;
         line_.scene = {};
@@ -384,8 +403,8 @@ private:
     }
 
     CLI::App app_;
-    CLI::App *render_ = nullptr, *reference_ = nullptr, *merge_ = nullptr, *compare_ = nullptr, *bench_ = nullptr,
-             *info_ = nullptr, *list_ = nullptr, *view_ = nullptr;
+    CLI::App *render_ = nullptr, *reference_ = nullptr, *merge_ = nullptr, *compare_ = nullptr, *study_ = nullptr,
+             *bench_ = nullptr, *info_ = nullptr, *list_ = nullptr, *view_ = nullptr;
     CommandLine line_;
     SharedText windowText_, renderText_, referenceText_, infoText_, viewText_;
     SceneOptions viewScene_;

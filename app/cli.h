@@ -56,12 +56,19 @@ struct MergeCommand {
     std::string out;
 };
 
+struct StudyCommandOptions {
+    std::string file;  ///< a study's name or path
+    std::string preset;
+    std::filesystem::path out;  ///< empty: `<study>-<preset>` in the current folder
+    Progress progress = Progress::Auto;
+};
+
 struct ListOptions {
-    std::string what;    ///< scenes, modules, buffers, parameters, metrics
+    std::string what;    ///< scenes, modules, buffers, parameters, metrics, studies
     std::string module;  ///< only what belongs to it
 };
 
-enum class Command { Window, Render, Reference, Merge, Compare, Bench, Info, List, View, PrintAndExit };
+enum class Command { Window, Render, Reference, Merge, Compare, Study, Bench, Info, List, View, PrintAndExit };
 
 struct CommandLine {
     Command command = Command::Window;
@@ -73,6 +80,7 @@ struct CommandLine {
     SceneOptions scene;     ///< Window, Info, View
     bool check = false;     ///< Info
     std::filesystem::path writeCameraPath;  ///< Info; may be empty
+    StudyCommandOptions study;  ///< Study
     std::string filter;     ///< Bench: regular expression over names
     ListOptions list;       ///< List
     ViewOptions view;       ///< View: script, out, samples, size; View and Window fill `start` from `scene`

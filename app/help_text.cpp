@@ -6,6 +6,7 @@
 #include "measure/temporal.h"
 #include "reconstruct/catalog.h"
 #include "scene/load.h"
+#include "study/study_file.h"
 
 namespace lumi {
 namespace {
@@ -34,6 +35,12 @@ std::string metricList() {
     return text;
 }
 
+std::string studyList() {
+    std::string text = "Studies:\n";
+    for (const StudyListing& study : listStudies()) text += fmt::format("  {:<22}{}\n", study.name, study.title);
+    return text;
+}
+
 }  // namespace
 
 const char* versionText() { return "lumiscope 0.1.0"; }
@@ -45,6 +52,7 @@ std::string mainFooter() {
            "  lumiscope render cornell --spp 64 --out cornell.exr --out cornell.png\n"
            "  lumiscope reference cornell --spp 4096 --out reference.exr\n"
            "  lumiscope compare cornell.exr reference.exr  how far one image is from another\n"
+           "  lumiscope study convergence --preset quick   methods compared, with a report\n"
            "  lumiscope list parameters                    everything that --set knows\n"
            "  lumiscope list metrics                       everything that compare measures\n\n" +
            sceneList() + "\n" + kExitCodes;
@@ -107,6 +115,15 @@ std::string compareFooter() {
            "  lumiscope compare noisy.exr reference.exr --metrics rmse,flip --maps errors --crop 0,0,256,256\n"
            "  lumiscope compare out.%04d.exr ref.%04d.exr --metrics relmse,temporal_reprojected,lag\n\n" +
            metricList() + "\n" + kExitCodes;
+}
+
+std::string studyFooter() {
+    return "Writes results.json, results.csv, timings.json and report.html. Run it again after an interruption, and it goes\n"
+           "on; results.json and results.csv come out the same bytes as without. References are kept for the next study.\n\n"
+           "Examples:\n"
+           "  lumiscope study convergence --preset quick\n"
+           "  lumiscope study my-study.json --out my-results --json\n\n" +
+           studyList() + "\n" + kExitCodes;
 }
 
 }  // namespace lumi

@@ -12,5 +12,6 @@ std::string benchFooter();
 std::string compareFooter();
 std::string referenceFooter();
 std::string viewFooter();
+std::string studyFooter();
 
 }  // namespace lumi

@@ -9,6 +9,7 @@
 #include "measure/measure.h"
 #include "params/json.h"
 #include "reconstruct/catalog.h"
+#include "study/study_file.h"
 
 namespace lumi {
 using nlohmann::json;
@@ -42,6 +43,18 @@ void listSceneTable(const MachineOptions& machine) {
     for (const SceneEntry& entry : listScenes()) {
         all.push_back({{"id", entry.name}, {"title", entry.title}, {"path", entry.path.string()}});
         rows.push_back({entry.name, entry.title});
+    }
+    print(machine, all, rows);
+}
+
+void listStudyTable(const MachineOptions& machine) {
+    json all = json::array();
+    std::vector<Row> rows;
+    for (const StudyListing& study : listStudies()) {
+        all.push_back({{"id", study.name}, {"title", study.title}, {"path", study.path.string()}, {"presets", study.presets}});
+        std::string presets;
+        for (const std::string& preset : study.presets) presets += (presets.empty() ? "" : ", ") + preset;
+        rows.push_back({study.name, presets.empty() ? "-" : presets, study.title});
     }
     print(machine, all, rows);
 }
@@ -172,6 +185,7 @@ int runList(const ListOptions& options, const MachineOptions& machine) {
     else if (options.what == "modules") listModules(options.module, machine);
     else if (options.what == "buffers") listBuffers(options.module, machine);
     else if (options.what == "metrics") listMetrics(machine);
+    else if (options.what == "studies") listStudyTable(machine);
     else listParameterTable(options.module, machine);
     return 0;
 }

@@ -5,6 +5,7 @@
 #include "app/commands.h"
 #include "app/interrupt_guard.h"
 #include "app/reference_command.h"
+#include "app/study_command.h"
 #include "app/view.h"
 #include "app/window.h"
 #include "base/error.h"
@@ -50,6 +51,10 @@ int runCommand(const CommandLine& line) {
         case Command::Render: {
             InterruptGuard interrupt;
             return runRender(line.render, line.machine, log, interrupt.token());
+        }
+        case Command::Study: {
+            InterruptGuard interrupt;
+            return runStudyCommand(line.study, line.machine, log, interrupt.token());
         }
         case Command::Bench: {
             InterruptGuard interrupt;

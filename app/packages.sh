@@ -11,7 +11,7 @@ build_packages=(
     fonts-inter fonts-jetbrains-mono ffmpeg
 )
 test_packages=(
-    python3 python3-xlib python3-jsonschema xvfb xauth xdotool x11-utils imagemagick git
+    python3 python3-xlib python3-jsonschema xvfb xauth xdotool x11-utils imagemagick git chromium
     embree-tools
     libopenmpi-dev openmpi-bin
 )

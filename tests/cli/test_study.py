@@ -1,0 +1,207 @@
+"""study: results, resuming after kill -9, errors. LUMISCOPE_KILLS sets how often a study is killed (3)."""
+import csv
+import json
+import os
+import random
+import signal
+import subprocess
+import time
+
+from lumiscope import PROGRAM, CommandTest, main
+
+STUDY = {
+    "version": 1, "title": "Tiny <study>", "scenes": ["cornell"], "size": [64, 36],
+    "frames": {"range": [0, 3], "measure": [1, 2]}, "spp": [1, 2], "seeds": [1, 2],
+    "reference": {"spp": 64}, "metrics": ["mse", "ssim", "temporal_reprojected"],
+    "entries": [{"name": "raw", "module": "none"},
+                {"name": "mean", "module": "accumulate"},
+                {"name": "limited", "module": "accumulate", "set": {"limit": True}, "tune": {"max-samples": [1, 4]}}],
+    "tuning": {"frame": 0, "metric": "mse"},
+    "pairs": [{"entry": "mean", "against": "raw"}],
+    "presets": {"quick": {}},
+}
+
+
+class StudyTest(CommandTest):
+    def write(self, name="tiny.json", **changes):
+        (self.folder / name).write_text(json.dumps({**STUDY, **changes}))
+        return name
+
+    def environment(self, cache="cache"):
+        return {"XDG_CACHE_HOME": str(self.folder / cache)}
+
+    def study(self, *arguments, cache="cache"):
+        return self.good("study", *arguments, **self.environment(cache))
+
+    def contents(self, folder):
+        """Every file that has to come out the same: all but times, and what shows them."""
+        root = self.folder / folder
+        return {str(path.relative_to(root)): path.read_bytes() for path in sorted(root.rglob("*"))
+                if path.is_file() and path.name not in ("timings.json", "times.json", "report.html")}
+
+
+class Results(StudyTest):
+    def test_a_study_writes_what_it_promises(self):
+        result = self.study(self.write(), "--preset", "quick", "--out", "out", "--json")
+        out = self.folder / "out"
+        self.assertEqual({p.name for p in out.iterdir() if p.is_file()} - {".lock"},
+                         {"results.json", "results.csv", "timings.json", "report.html"})
+        results = json.loads((out / "results.json").read_text())
+        self.assertEqual(result.json, results)
+        # Three entries, two sample counts, two seeds; two frames, and what is measured over the sequence.
+        self.assertEqual(len(results["rows"]), 36)
+        keys = [(r["scene"], r["frame"], r["entry"], r["spp"], r["seed"]) for r in results["rows"]]
+        self.assertEqual(len(set(keys)), 36)
+        sequences = [row for row in results["rows"] if row["frame"] == "sequence"]
+        self.assertEqual(len(sequences), 12)
+        flicker = {(r["entry"], r["spp"], r["seed"]): r["metrics"]["temporal_reprojected"] for r in sequences}
+        self.assertGreater(flicker["raw", 1, 1], 1.5 * flicker["mean", 1, 1], "a mean of frames flickers less")
+        for row in results["rows"]:
+            if row["frame"] == "sequence":
+                continue
+            self.assertGreater(row["metrics"]["mse"], 0)
+            self.assertLessEqual(row["corrected"]["mse"], row["metrics"]["mse"])
+            self.assertLess(row["metrics"]["ssim"], 1)
+            self.assertEqual(row["nonfinite_pixels"], 0)
+        with open(out / "results.csv") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual(len(table), 36)
+        for line, row in zip(table, results["rows"]):
+            metric = "temporal_reprojected" if row["frame"] == "sequence" else "mse"
+            self.assertEqual(float(line[metric]), row["metrics"][metric])
+            self.assertEqual((line["entry"], line["frame"]), (row["entry"], str(row["frame"])))
+        # The mean of three frames has less error than one frame, and two samples less than one.
+        mean = {(s["entry"], s["spp"]): s for s in results["summary"] if s["metric"] == "mse" and s["scene"] == "cornell"}
+        self.assertLess(mean["mean", 1]["mean"], 0.7 * mean["raw", 1]["mean"])
+        self.assertLess(mean["raw", 2]["mean"], 0.7 * mean["raw", 1]["mean"])
+        self.assertEqual(mean["raw", 1]["count"], 2)
+        self.assertLess(mean["raw", 1]["low"], mean["raw", 1]["mean"])
+        # Tuning finds that more samples are better.
+        self.assertEqual({t["chosen"]["max-samples"] for t in results["tuning"]} - {"1", "4"}, set())
+        self.assertEqual(len(results["tuning"][0]["candidates"]), 2)
+        times = json.loads((out / "timings.json").read_text())
+        self.assertEqual(len(times["rows"]), 6)
+        self.assertTrue(all(row["trace_ms"] > 0 for row in times["rows"]))
+        self.assertIn("equivalent_spp", results["equivalent_samples"][0])
+
+    def test_the_report_is_one_file_that_needs_no_other(self):
+        self.study(self.write(), "--preset", "quick", "--out", "out")
+        page = (self.folder / "out" / "report.html").read_text()
+        self.assertIn("<title>Tiny &lt;study&gt;</title>", page)
+        self.assertNotIn("{{", page.split("<script", 1)[0])
+        for outside in ('src="http', 'href="http', "@import", "url(http"):
+            self.assertNotIn(outside, page)
+        data = json.loads(page.split('id="data">', 1)[1].split("</script>", 1)[0])
+        self.assertEqual(len(data["pictures"]), 2, "the least and the most samples")
+        kinds = [image["kind"] for image in data["pictures"][0]["images"]]
+        self.assertEqual(sorted(kinds), ["error"] * 3 + ["method"] * 3 + ["reference"])
+
+    def test_table_on_standard_output(self):
+        result = self.study(self.write(), "--out", "out")
+        for part in ("cornell, 1 spp", "raw", "limited", "±"):
+            self.assertIn(part, result.out)
+        self.assertIn("Wrote out/report.html", result.err)
+
+    def test_threads_never_change_a_result(self):
+        name = self.write()
+        self.study(name, "--out", "one", "--threads", "1", cache="a")
+        self.study(name, "--out", "three", "--threads", "3", cache="b")
+        self.assertEqual(self.contents("one"), self.contents("three"))
+
+    def test_a_changed_study_keeps_what_it_can(self):
+        self.study(self.write(), "--out", "out")
+        before = {p.name for p in (self.folder / "out" / "jobs").iterdir()}
+        result = self.study(self.write(seeds=[2, 3], title="Other"), "--out", "out")
+        after = {p.name for p in (self.folder / "out" / "jobs").iterdir()}
+        # At two sample counts: one tuning, and two groups of methods for each of two seeds, one of which is new.
+        self.assertEqual((len(before), len(before & after), len(after)), (10, 6, 10))
+        self.assertIn("4 jobs run, 6 found done", result.err)
+        self.assertEqual({r["seed"] for r in json.loads(self.bytes("out/results.json"))["rows"]}, {2, 3})
+
+
+class Resume(StudyTest):
+    def test_killed_at_any_moment_it_ends_with_the_same_bytes(self):
+        name = self.write()
+        begun = time.monotonic()
+        self.study(name, "--out", "whole", cache="a")
+        duration = time.monotonic() - begun
+        expected = self.contents("whole")
+        seed = int(os.environ.get("LUMISCOPE_SEED", "1"))
+        moments = random.Random(seed)
+        killed = 0
+        for kill in range(int(os.environ.get("LUMISCOPE_KILLS", "3"))):
+            folder, cache = f"killed-{kill}", f"cache-{kill}"
+            for _ in range(moments.randint(1, 3)):
+                process = subprocess.Popen([PROGRAM, "study", name, "--out", folder, "--quiet"], cwd=self.folder,
+                                           stdout=subprocess.DEVNULL, env={**os.environ, **self.environment(cache)})
+                time.sleep(moments.uniform(0.02, 0.9 * duration))
+                process.send_signal(signal.SIGKILL)
+                killed += process.wait() == -signal.SIGKILL
+            self.study(name, "--out", folder, cache=cache)
+            self.assertEqual(self.contents(folder), expected, f"seed {seed}, kill {kill}")
+        self.assertGreater(killed, 0)
+
+    def test_a_finished_study_runs_nothing_again(self):
+        name = self.write()
+        self.study(name, "--out", "out")
+        before = self.contents("out")
+        result = self.study(name, "--out", "out")
+        self.assertIn("0 jobs run, ", result.err)
+        self.assertEqual(self.contents("out"), before)
+
+    def test_an_interrupt_ends_it_and_it_goes_on(self):
+        name = self.write()
+        process = subprocess.Popen([PROGRAM, "study", name, "--out", "out"], cwd=self.folder, stderr=subprocess.PIPE,
+                                   stdout=subprocess.PIPE, env={**os.environ, **self.environment()})
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        _, error = process.communicate()
+        self.assertIn(process.returncode, (130, 0), error)
+        self.study(name, "--out", "out")
+
+    def test_one_process_works_in_a_folder(self):
+        name = self.write(reference={"spp": 4096}, size=[320, 180])
+        process = subprocess.Popen([PROGRAM, "study", name, "--out", "out", "--quiet"], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, env={**os.environ, **self.environment()})
+        try:
+            while not (self.folder / "out" / ".lock").exists():
+                time.sleep(0.01)
+            time.sleep(0.1)
+            self.refused(2, ["another study runs in this folder"], "study", name, "--out", "out", **self.environment())
+        finally:
+            process.kill()
+            process.wait()
+
+
+class Errors(StudyTest):
+    def test_one_line_with_the_place(self):
+        self.refused(2, ["unknown study", '"convergence"'], "study", "convergense")
+        self.refused(3, ["no such file", "no/such.json"], "study", "no/such.json")
+        self.refused(2, ["no preset", "--preset", '"quick"'], "study", self.write(), "--preset", "qick")
+        (self.folder / "broken.json").write_text('{\n  "version": 1,\n  "sceens": []\n}')
+        self.refused(3, ["broken.json:3:3", '"scenes"'], "study", "broken.json")
+        self.refused(3, ["lost.json:1:", "unknown scene"], "study", self.write("lost.json", scenes=["no-such-scene"]))
+        self.refused(3, ["bad.json:1:", "path.max-dept", "path.max-depth"], "study",
+                     self.write("bad.json", set={"path.max-dept": 3}), "--out", "o", **self.environment())
+        self.refused(3, ["bad.json:1:", "camera.select"], "study",
+                     self.write("bad.json", scenes=[{"scene": "cornell", "set": {"camera.select": "nobody"}}]), "--out", "p",
+                     **self.environment())
+
+    def test_optional_scenes_are_left_out_with_a_warning(self):
+        name = self.write(scenes=["cornell", {"scene": "assets:no/such.gltf", "optional": True}], seeds=[1], spp=[1])
+        result = self.study(name, "--out", "out")
+        self.assertIn("warning: scene \"such\" is left out", result.err)
+        name = self.write(scenes=[{"scene": "assets:no/such.gltf", "optional": True}])
+        self.refused(3, ["none of the study's scenes is there"], "study", name, "--quiet")
+
+    def test_list_studies(self):
+        studies = {s["id"]: s for s in self.good("list", "studies", "--json").json}
+        self.assertLessEqual({"convergence", "clamping"}, set(studies))
+        for study in studies.values():
+            self.assertLessEqual({"quick", "paper"}, set(study["presets"]))
+        self.assertIn(studies["convergence"]["title"], self.good("list", "studies").out)
+        self.assertIn("convergence", self.good("study", "--help").out)
+
+
+if __name__ == "__main__":
+    main()
