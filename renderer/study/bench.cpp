@@ -4,6 +4,7 @@
 
 #include <regex>
 
+#include "study/bench_metrics.h"
 #include "study/bench_pathtracer.h"
 #include "study/bench_program.h"
 #include "study/bench_scene.h"
@@ -28,9 +29,13 @@ struct Entry {
 class Bench {
 public:
     Bench(const BenchOptions& options, MessageLog& log, Output output)
-        : options_(options), log_(log), output_(std::move(output)) {
+        : options_(options), log_(log), output_(std::move(output)), filters_(log, options.stop) {
         for (const char* scene : kScenes)
             if (benchSceneFile(scene)) addScene(scene);
+        for (const std::string& id : benchedMetrics())
+            add("metric/" + id, [this, id](const std::string& name) { benchMetric(id, name, options_.stop, output_); });
+        for (const std::string& id : benchedModules())
+            add("filter/" + id, [this, id](const std::string&) { filters_.run(id, output_); });
         if (!hasPathtracer()) return;
         add("trace/embree-pathtracer/cornell_box", [this](const std::string& name) { pathtracer(name, ""); });
         for (const char* scene : {"atrium", "sponza"})
@@ -149,6 +154,7 @@ private:
     const BenchOptions& options_;
     MessageLog& log_;
     const Output output_;
+    FilterBench filters_;
     std::vector<Entry> entries_;
     std::string openName_;
     std::unique_ptr<BenchScene> open_;

@@ -34,7 +34,12 @@ struct BenchOptions {
 ///     `pathtracer` reports for the same file, camera, light, size and path length (Debian's embree-tools).
 ///   load/<scene>, build/<scene>: seconds to read a scene, and to make it ready for rays.
 ///   memory/<scene>: peak of a program that loads and renders it; the limit is twice what scene and tracer hold.
-/// Frames are 640x360, and times are medians of runs that alternate between what is measured and its limit.
+///   metric/<id>: megapixels a second on a 1920x1080 pair; the limit streams both images through memory once.
+///   filter/<module>: frames a second at 1280x720 on one traced frame with full history, then filter/<module>/<stage>; the
+///     limit streams what the module reads and its image through memory once.
+///   memory/metric/<id>, memory/filter/<module>: follow these; what the first allocates and what the second keeps, held
+///     against the bytes of the streams.
+/// Traced frames are 640x360, and times are medians of runs that alternate between what is measured and its limit.
 void runBench(const BenchOptions& options, MessageLog& log, const std::function<void(const BenchResult&)>& onResult);
 
 }  // namespace lumi
