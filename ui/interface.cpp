@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ui/commands.h"
+#include "ui/open_report.h"
 #include "ui/panels/panels.h"
 #include "ui/theme.h"
 #include "ui/viewport.h"
@@ -59,7 +60,10 @@ void Interface::setScale(float scale) {
 }
 
 void Interface::dispatch(const FrameInput& input) {
-    for (const auto& path : input.dropped) state_.open(path);
+    for (const auto& path : input.dropped) {
+        if (const auto report = reportAt(path); !report.empty()) openInBrowser(report, state_.log);
+        else state_.open(path);
+    }
     for (const KeyChord& chord : input.pressed) {
         const auto command = commandFor(chord);
         if (!command) continue;
