@@ -54,7 +54,7 @@ public:
     /// Takes lobes away, as if they were black: what a path at a depth limit may no longer use. Albedos go with them.
     void keep(bool diffuse, bool specular);
 
-    /// Makes the albedo tables that materials of this ior need (about 20 ms the first time), so that no path waits.
+    /// Makes the albedo tables that materials of this ior need (some 200 ms the first time), so that no path waits.
     /// `transmits`: also those of dielectric boundaries. Any thread.
     static void prepare(float ior, bool transmits);
 

@@ -16,7 +16,7 @@ public:
     static float roundedIor(float ior);
 
     /// `ior` as rounded; `entering`: light arrives and leaves on the side where the index is 1. Made at first use of
-    /// an ior (some 150 ms) and kept; any thread, without waiting for others.
+    /// an ior (some 200 ms) and kept; any thread, without waiting for others.
     static const DielectricAlbedo& get(float ior, bool entering);
 
     explicit DielectricAlbedo(float eta);
