@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "math/vector.h"
+#include "math/sin_cos.h"
 
 namespace lumi {
 
@@ -36,8 +36,8 @@ struct Ggx {
     /// A facet normal seen from `wo` (z > 0), with density masking(wo) distribution(h) dot(wo, h) / wo.z
     /// [Dupuy & Benyoub 2023: a reflected cap of the unit sphere].
     Vec3 sampleVisibleNormal(const Vec3& wo, Vec2 u) const {
-        const float phi = 2 * kPi * u.y;
-        return visibleNormal(stretched(wo), u.x, std::cos(phi), std::sin(phi));
+        const SinCos phi = sinCosTurns(u.y);
+        return visibleNormal(stretched(wo), u.x, phi.cosine, phi.sine);
     }
     float visibleNormalPdf(const Vec3& wo, const Vec3& h) const {
         return masking(wo) * distribution(h) * std::max(glm::dot(wo, h), 0.0f) / wo.z;
