@@ -10,15 +10,14 @@
 namespace lumi {
 namespace {
 
+/// An option that may stand several times, each with one value.
+void addRepeatable(CLI::App& app, const char* name, std::vector<std::string>& values, const char* type, const char* help) {
+    app.add_option(name, values, help)->type_name(type)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 void addShared(CLI::App& app, SharedText& text, SceneOptions& scene) {
-    app.add_option("--module", scene.modules, "Method that makes the image, as `list modules` names it")
-        ->type_name("INSTANCE")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    app.add_option("--set", text.set, "Set any parameter of `list parameters`; repeatable")
-        ->type_name("ID=VALUE")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    addRepeatable(app, "--module", scene.modules, "INSTANCE", "Method that makes the image, as `list modules` names it");
+    addRepeatable(app, "--set", text.set, "ID=VALUE", "Set any parameter of `list parameters`; repeatable");
     app.add_option("--size", text.size, "Size of the rendered image (the scene's, else 1280x720)")->type_name("WxH")->take_last();
     app.add_option("--spp", text.spp, "Samples a pixel in each frame (1)")->type_name("N")->take_last();
     app.add_option("--fps", text.fps, "Frames a second: frame f shows time f/F (60)")->type_name("F")->take_last();
@@ -118,8 +117,7 @@ private:
         addMachine(app_, line_.machine, true);
         app_.add_option("--captures", line_.captures, "Folder for screenshots (the current one)")->type_name("DIR");
         app_.add_option("--ui-map", line_.uiMap, "Write where every item of the window is to this file, as JSON")
-            ->type_name("FILE")
-            ->group("Testing");
+            ->type_name("FILE")->group("Testing");
     }
 
     void addRender() {
@@ -131,12 +129,9 @@ private:
         addShared(*app, renderText_, render.scene);
         addFrames(*app, frames_, warmUp_);
         addCameraPath(*app, render.scene);
-        app->add_option("--out", render.out,
-                        "File to write: .exr, .png or .mp4, %04d is the frame number; repeatable "
-                        "(<scene>.<module>.exr, a free name)")
-            ->type_name("PATH")
-            ->expected(1)
-            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        addRepeatable(*app, "--out", render.out, "PATH",
+                      "File to write: .exr, .png or .mp4, %04d is the frame number; repeatable "
+                      "(<scene>.<module>.exr, a free name)");
         app->add_option("--buffers", render.buffers, "Layers to add to .exr files, as `list buffers` names them, or all")
             ->type_name("NAME,...");
         app->add_flag("--half", render.half, "Store colours of .exr files as half");
@@ -154,8 +149,7 @@ private:
         app->get_option("--module")->description("accumulate, which is what converges");
         app->add_option("--error", reference.error,
                         "Instead of --spp: go on until the relative standard error is at most this")
-            ->type_name("E")
-            ->check(CLI::Range(1e-6, 1e3).description(""))
+            ->type_name("E")->check(CLI::Range(1e-6, 1e3).description(""))
             ->excludes("--spp")
             ->take_last();
         app->add_option("--samples", samples_, "Only the sums of samples A to B-1, multiples of 16, for `merge`")
@@ -164,13 +158,9 @@ private:
             ->take_last();
         addCameraPath(*app, reference.scene);
         app->add_option("--frames", referenceFrames_, "A reference for each of frames 0..N-1, or A..B without B (1)")
-            ->type_name("N|A..B")
-            ->take_last();
-        app->add_option("--out", reference.out,
-                        "File to write: .exr or .png, %04d is the frame number; repeatable (<scene>.reference.exr, a free name)")
-            ->type_name("PATH")
-            ->expected(1)
-            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+            ->type_name("N|A..B")->take_last();
+        addRepeatable(*app, "--out", reference.out, "PATH",
+                      "File to write: .exr or .png, %04d is the frame number; repeatable (<scene>.reference.exr, a free name)");
         app->add_option("--buffers", reference.buffers, "Signals to add to .exr files as layers, or all")->type_name("NAME,...");
         app->add_flag("--half", reference.half, "Store colours of .exr files as half");
         addProgress(*app);
@@ -181,12 +171,9 @@ private:
     void addMerge() {
         CLI::App* app = merge_ = app_.add_subcommand("merge", "Add up parts that `reference --samples` wrote");
         app->add_option("parts", line_.merge.parts, "Parts whose samples follow each other, in any order")
-            ->required()
-            ->type_name("PART...");
+            ->required()->type_name("PART...");
         app->add_option("--out", line_.merge.out, "Image (.exr, .png), or a larger part (.lumiref)")
-            ->required()
-            ->type_name("FILE")
-            ->take_last();
+            ->required()->type_name("FILE")->take_last();
         addMachine(*app, line_.machine, true);
         app->footer("Example:\n  lumiscope merge a.lumiref b.lumiref --out cornell.exr");
     }
@@ -204,11 +191,9 @@ private:
         CLI::App* app = compare_ = app_.add_subcommand("compare", "Measure how far an image is from its reference");
         CompareOptions& compare = line_.compare;
         app->add_option("image", compare.image, "Image to judge: .exr, .hdr, .png, .jpg, .bmp or .tga; frames as a.%04d.exr")
-            ->required()
-            ->type_name("IMAGE");
+            ->required()->type_name("IMAGE");
         app->add_option("reference", compare.reference, "What it should be, of the same size")
-            ->required()
-            ->type_name("REFERENCE");
+            ->required()->type_name("REFERENCE");
         app->add_option("--metrics", metrics_, "Only these, as `list metrics` names them (all)")
             ->type_name("NAME,...")->take_last();
         app->add_option("--maps", compare.maps, "Folder for error maps, .exr and in false colour .png; made if missing")
@@ -218,8 +203,7 @@ private:
         app->add_option("--mask", compare.mask, "Image of the same size: only where its luminance is above 0.5")
             ->type_name("FILE")->take_last();
         app->add_option("--exposure", compare.exposureEv, "Stops, for metrics that judge the image as shown (0)")
-            ->type_name("EV")
-            ->check(CLI::Range(-100.0, 100.0).description(""))
+            ->type_name("EV")->check(CLI::Range(-100.0, 100.0).description(""))
             ->take_last();
         app->add_option("--flip-exposures", flipExposures_, "Exposure range of HDR-FLIP in stops (what the reference says)")
             ->type_name("START,STOP[,COUNT]")->take_last();
@@ -252,10 +236,7 @@ private:
     void addInfo() {
         CLI::App* app = info_ = app_.add_subcommand("info", "Tell what a scene holds, and every warning");
         app->add_option("scene", infoScene_, "Scene to read: a name or a path")->required()->type_name("SCENE");
-        app->add_option("--set", infoText_.set, "Set any parameter, as scene.index=N; repeatable")
-            ->type_name("ID=VALUE")
-            ->expected(1)
-            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        addRepeatable(*app, "--set", infoText_.set, "ID=VALUE", "Set any parameter, as scene.index=N; repeatable");
         app->add_option("--write-camera-path", line_.writeCameraPath,
                         "Write the camera's keys as JSON; a name in .ngp.json is for instant-ngp")
             ->type_name("FILE")->take_last();
@@ -270,8 +251,7 @@ private:
     void addList() {
         CLI::App* app = list_ = app_.add_subcommand("list", "List what there is: scenes, modules, buffers, parameters, metrics, studies");
         app->add_option("what", line_.list.what, "scenes, modules, buffers, parameters, metrics or studies")
-            ->required()
-            ->type_name("WHAT")
+            ->required()->type_name("WHAT")
             ->check(CLI::IsMember({"scenes", "modules", "buffers", "parameters", "metrics", "studies"}).description(""));
         app->add_option("--module", line_.list.module, "Only what belongs to this module")->type_name("INSTANCE");
         addMachine(*app, line_.machine, false);
@@ -286,8 +266,7 @@ private:
         app->add_option("--script", line_.view.script, "Input events to play, one a line")->type_name("FILE");
         app->add_option("--window", windowSize_, "Size of the window's content (1280x800)")->type_name("WxH");
         app->add_option("--samples", line_.view.samples, "Without a script: samples a pixel before the shot (16)")
-            ->type_name("N")
-            ->check(CLI::Range(1, 1 << 20).description(""));
+            ->type_name("N")->check(CLI::Range(1, 1 << 20).description(""));
         addFrames(*app, frames_, warmUp_);
         app->add_option("--buffers", line_.view.buffers,
                         "Write an .exr beside each PNG, with these layers, as `list buffers` names them, or all")
