@@ -3,6 +3,7 @@
 #include <array>
 
 #include "math/hash.h"
+#include "trace/blue_noise.h"
 
 namespace lumi {
 namespace {
@@ -91,10 +92,18 @@ float halton(uint32_t index, uint32_t scramble, uint32_t dimension) {
     return static_cast<float>(sum) * 0x1p-24f;
 }
 
+/// `base` moved on around the circle by what the tile holds at the pixel.
+float rotated(float base, uint32_t x, uint32_t y, uint32_t scramble, uint32_t dimension) {
+    const uint32_t shift = hashCombine(scramble, dimension);
+    const float sum = base + BlueNoiseTile::instance().at(x + shift, y + (shift >> 16));
+    return sum < 1 ? sum : sum - 1;
+}
+
 }  // namespace
 
 SampleStream::SampleStream(SamplerKind kind, int haltonLoop, uint32_t seed, const RandomKey& key)
-    : kind_(kind), scramble_(hashCombine(key.x, key.y, seed)), index_(key.sample) {
+    : kind_(kind), scramble_(hashCombine(key.x, key.y, seed)), index_(key.sample), x_(key.x), y_(key.y) {
+    if (kind == SamplerKind::BlueNoise) scramble_ = pcgHash(seed);
     if (kind == SamplerKind::Halton && haltonLoop > 0) index_ %= static_cast<uint32_t>(haltonLoop);
 }
 
@@ -102,10 +111,12 @@ float SampleStream::get1(uint32_t dimension) const {
     switch (kind_) {
         case SamplerKind::Halton: return halton(index_, scramble_, dimension);
         case SamplerKind::Independent: return independent(index_, scramble_, dimension);
-        case SamplerKind::Sobol: break;
+        case SamplerKind::Sobol:
+        case SamplerKind::BlueNoise: break;
     }
     const SobolPair pair(index_, scramble_, dimension >> 1);
-    return (dimension & 1u) != 0 ? pair.y() : pair.x();
+    const float value = (dimension & 1u) != 0 ? pair.y() : pair.x();
+    return kind_ == SamplerKind::Sobol ? value : rotated(value, x_, y_, scramble_, dimension);
 }
 
 Vec2 SampleStream::get2(uint32_t dimension) const {
@@ -114,10 +125,12 @@ Vec2 SampleStream::get2(uint32_t dimension) const {
             return {halton(index_, scramble_, dimension), halton(index_, scramble_, dimension + 1)};
         case SamplerKind::Independent:
             return {independent(index_, scramble_, dimension), independent(index_, scramble_, dimension + 1)};
-        case SamplerKind::Sobol: break;
+        case SamplerKind::Sobol:
+        case SamplerKind::BlueNoise: break;
     }
     const SobolPair pair(index_, scramble_, dimension >> 1);
-    return {pair.x(), pair.y()};
+    if (kind_ == SamplerKind::Sobol) return {pair.x(), pair.y()};
+    return {rotated(pair.x(), x_, y_, scramble_, dimension), rotated(pair.y(), x_, y_, scramble_, dimension + 1)};
 }
 
 }  // namespace lumi

@@ -86,8 +86,9 @@ void PathSettings::describe(ParameterVisitor& v) {
     });
     v.choice("sampler.kind", sampler,
              {.label = "Sampler",
-              .options = {"sobol", "halton", "independent"},
-              .help = "Owen-scrambled Sobol pairs, Halton that loops, or independent numbers.",
+              .options = {"sobol", "halton", "independent", "blue-noise"},
+              .help = "Owen-scrambled Sobol pairs, Halton that loops, independent numbers, or (for one "
+                      "sample a frame) numbers by which neighbouring pixels err differently [Georgiev & Fajardo 2016].",
               .redo = Redo::Samples});
     v.when(sampler == SamplerKind::Halton, [&] {
         v.integer("sampler.halton-loop", haltonLoop,

@@ -6,7 +6,7 @@
 
 namespace lumi {
 
-enum class SamplerKind { Sobol, Halton, Independent };
+enum class SamplerKind { Sobol, Halton, Independent, BlueNoise };
 enum class DirectStrategy { Mis, Light, Bsdf };
 enum class LightSampling : uint8_t { Power, Tree };
 enum class Jitter { Auto, PerFrame, PerPixel, None };

@@ -11,7 +11,10 @@
 namespace lumi {
 namespace {
 
+/// Those whose pixels know nothing of one another, and all.
 constexpr SamplerKind kKinds[] = {SamplerKind::Sobol, SamplerKind::Halton, SamplerKind::Independent};
+constexpr SamplerKind kAllKinds[] = {SamplerKind::Sobol, SamplerKind::Halton, SamplerKind::Independent,
+                                     SamplerKind::BlueNoise};
 
 SampleStream sobol(uint32_t x, uint32_t y, uint32_t sample, uint32_t seed = 0) {
     return {SamplerKind::Sobol, 16, seed, {x, y, sample}};
@@ -59,7 +62,7 @@ TEST(Sampler, SingleDimensionsAreStratified) {
 }
 
 TEST(Sampler, PairsAgreeWithSingles) {
-    for (const SamplerKind kind : kKinds)
+    for (const SamplerKind kind : kAllKinds)
         for (const uint32_t dimension : {0u, 6u, 60u, 126u, 300u}) {
             const SampleStream stream(kind, 16, 5, {3, 9, 12});
             const Vec2 pair = stream.get2(dimension);
@@ -70,7 +73,7 @@ TEST(Sampler, PairsAgreeWithSingles) {
 
 TEST(Sampler, StaysInRangeForAnyKey) {
     const uint32_t words[] = {0, 1, 2, 0x7fffffffu, 0x80000000u, 0xfffffffeu, 0xffffffffu};
-    for (const SamplerKind kind : kKinds)
+    for (const SamplerKind kind : kAllKinds)
         for (const uint32_t x : words)
             for (const uint32_t sample : words)
                 for (const uint32_t dimension : {0u, 1u, 54u, 127u, 128u, 0x7ffffffeu})
@@ -84,8 +87,8 @@ TEST(Sampler, StaysInRangeForAnyKey) {
 // Over pixels at one sample index each dimension is uniform: the scrambles and rotations are.
 TEST(Sampler, UniformOverPixels) {
     constexpr int kBins = 64, kSide = 200;
-    const int tests = 3 * 5;
-    for (const SamplerKind kind : kKinds)
+    const int tests = 4 * 5;
+    for (const SamplerKind kind : kAllKinds)
         for (const uint32_t dimension : {0u, 1u, 9u, 100u, 200u}) {
             std::vector<double> observed(kBins), expected(kBins, double(kSide) * kSide / kBins);
             for (uint32_t y = 0; y < kSide; ++y)
@@ -169,7 +172,7 @@ TEST(Sampler, HaltonIsRadicalInverseRotated) {
 }
 
 TEST(Sampler, IsAFunctionOfItsArguments) {
-    for (const SamplerKind kind : kKinds) {
+    for (const SamplerKind kind : kAllKinds) {
         const SampleStream a(kind, 16, 7, {100, 200, 3}), b(kind, 16, 7, {100, 200, 3});
         const SampleStream otherSeed(kind, 16, 8, {100, 200, 3}), otherSample(kind, 16, 7, {100, 200, 4});
         for (uint32_t dimension = 0; dimension < 64; dimension += 2) {
