@@ -1,11 +1,14 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "params/parameter.h"
 
 namespace lumi {
 
 enum class Projection : uint8_t { Perspective, Orthographic };
+enum class ApertureShape : uint8_t { Round, Bladed };
+enum class StereoEye : uint8_t { Centre, Left, Right };
 
 /// A camera as a user edits it. It looks from `eye` to `target`.
 struct Camera {
@@ -16,9 +19,15 @@ struct Camera {
     float yMag = 1;         ///< orthographic: half the visible height in metres
     float aperture = 0;     ///< lens radius in metres; 0 is a pinhole
     float focus = 5;        ///< metres to the plane in focus
+    ApertureShape apertureShape = ApertureShape::Round;
+    int apertureBlades = 6;             ///< bladed: corners of the regular polygon inside the lens
+    float apertureRotationDeg = 0;      ///< bladed: counter-clockwise as seen from behind the camera
+    float shutter = 0;                  ///< how long it is open, in frames; 0: an instant
+    StereoEye eyeOfPair = StereoEye::Centre;
+    float interaxial = 0.064f;          ///< metres between the two eyes of a stereo pair
     bool operator==(const Camera&) const = default;
 
-    /// Everything a user can move: eye, look-at, up, projection, fov-y-deg, y-mag, aperture, focus.
+    /// Everything a user can move: eye, look-at, up, projection, fov-y-deg, y-mag, aperture, focus, shutter, ...
     void describe(ParameterVisitor&);
 };
 
@@ -30,6 +39,9 @@ struct CameraPose {
     Projection projection = Projection::Perspective;
     float halfHeight = 0.41421356f;  ///< perspective: tan(fovY/2); orthographic: metres
     float aperture = 0, focus = 5;
+    int blades = 0;            ///< corners of the aperture; 0: round
+    float bladeRotation = 0;   ///< radians
+    float shutter = 0;         ///< frames that the shutter is open
 
     Vec3 position() const { return Vec3(worldFromCamera[3]); }
     Vec3 forward() const { return -Vec3(worldFromCamera[2]); }
@@ -41,6 +53,14 @@ struct CameraPose {
     bool operator==(const CameraPose&) const = default;
 };
 
+/// The camera, or that eye of its stereo pair: both look the same way from half the interaxial distance to either side,
+/// so that the pair is rectified and a point's disparity is `interaxial / depth` over the pixel size.
 CameraPose poseCamera(const Camera& camera, Extent2 extent);
+
+/// A camera on its way from `a` to `b`, `t` from 0 to 1: rotation on the shorter arc, all else straight.
+CameraPose interpolate(const CameraPose& a, const CameraPose& b, float t);
+
+/// A camera over the time that its shutter is open: poses at equally spaced moments, or a single one if it stands still.
+using CameraTrack = std::vector<CameraPose>;
 
 }  // namespace lumi

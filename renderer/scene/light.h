@@ -6,6 +6,7 @@
 #include "image/image.h"
 #include "math/transform.h"
 #include "params/parameter.h"
+#include "scene/texture.h"
 
 namespace lumi {
 
@@ -18,7 +19,8 @@ struct Light {
     LightType type = LightType::Point;
     Vec3 intensity{1};   ///< point, spot: W/sr
     Vec3 irradiance{1};  ///< directional: W/m^2 on a plane facing it
-    Vec3 radiance{1};    ///< rectangle, disk, sphere: W/(m^2 sr), uniform, one-sided for the flat ones
+    Vec3 radiance{1};    ///< rectangle, disk, sphere: W/(m^2 sr), one-sided for the flat ones
+    Texture radianceTexture;  ///< rectangle, disk: RGB (sRGB) times radiance, upright as seen from where it shines
     float range = kInfinity;           ///< point, spot: no light beyond; KHR_lights_punctual's fall-off window
     float innerConeDeg = 0, outerConeDeg = 45;  ///< spot: half-angles
     float angleDeg = 0;  ///< directional: full angular diameter; 0 is a delta

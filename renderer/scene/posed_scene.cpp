@@ -4,61 +4,10 @@
 
 #include "base/parallel.h"
 #include "scene/bounds.h"
-#include "scene/deform.h"
-#include "scene/node_pose.h"
+#include "scene/posed_shutter.h"
 
 namespace lumi {
 namespace {
-
-using Vertices = std::shared_ptr<const DeformedVertices>;
-
-/// Node tree and joints at one moment.
-struct Moment {
-    NodePose nodes;
-    std::vector<std::vector<Mat4>> joints;  ///< for each skin
-};
-
-Moment poseMoment(const Scene& scene, float time) {
-    Moment moment{poseNodes(scene, time), {}};
-    for (const Skin& skin : scene.skins) moment.joints.push_back(jointMatrices(skin, moment.nodes));
-    return moment;
-}
-
-bool isSkinned(const Instance& instance) { return instance.skin >= 0 && !instance.mesh->skin.empty(); }
-
-Mat4 placement(const Instance& instance, const Moment& moment) {
-    if (instance.node < 0 || isSkinned(instance)) return Mat4(1);
-    return moment.nodes.worldFromNode[static_cast<size_t>(instance.node)];
-}
-
-std::span<const float> weightsOf(const Instance& instance, const Moment& moment) {
-    if (instance.node < 0) return {};
-    return moment.nodes.morphWeights[static_cast<size_t>(instance.node)];
-}
-
-std::span<const Mat4> jointsOf(const Instance& instance, const Moment& moment) {
-    if (!isSkinned(instance)) return {};
-    return moment.joints[static_cast<size_t>(instance.skin)];
-}
-
-bool equalSpans(std::span<const float> a, std::span<const float> b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end());
-}
-bool equalSpans(std::span<const Mat4> a, std::span<const Mat4> b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end());
-}
-
-bool deformsAlike(const Instance& instance, const Moment& a, const Moment& b) {
-    return &a == &b || (equalSpans(weightsOf(instance, a), weightsOf(instance, b)) &&
-                        equalSpans(jointsOf(instance, a), jointsOf(instance, b)));
-}
-
-bool deforms(const Instance& instance) { return !instance.mesh->morphTargets.empty() || isSkinned(instance); }
-
-Vertices deformAt(const Instance& instance, const Moment& moment) {
-    return std::make_shared<const DeformedVertices>(
-        deform(*instance.mesh, weightsOf(instance, moment), jointsOf(instance, moment)));
-}
 
 /// Whether `earlier` is the frame that `previousOpen` means, with the same things in it: then what it showed is what
 /// motion refers to, also when a user moved an object since.
@@ -70,12 +19,12 @@ bool continues(const PosedScene* earlier, const Scene& scene, const ShutterTimes
     return earlier->scene->lights.size() == scene.lights.size();
 }
 
-PosedInstance poseInstance(const Instance& instance, const Moment& open, const Moment& close, const Moment& previous,
+PosedInstance poseInstance(const Instance& instance, const PosedMoment& open, const PosedMoment& close, const PosedMoment& previous,
                            const PosedInstance* earlier) {
     PosedInstance posed;
-    posed.worldFromObject = placement(instance, open);
-    posed.worldFromObjectClose = placement(instance, close);
-    posed.worldFromObjectPrevious = earlier ? earlier->worldFromObject : placement(instance, previous);
+    posed.worldFromObject = placementOf(instance, open);
+    posed.worldFromObjectClose = placementOf(instance, close);
+    posed.worldFromObjectPrevious = earlier ? earlier->worldFromObject : placementOf(instance, previous);
     posed.normalFromObject = normalMatrix(posed.worldFromObject);
     if (deforms(instance)) {
         posed.deformed = earlier && earlier->deformed && deformsAlike(instance, open, previous)
@@ -106,9 +55,9 @@ Bounds3 worldBounds(const PosedInstance& posed, const Bounds3& meshBounds) {
     return transformedBounds(posed.deformed ? boundsOf(posed.deformed->positions) : meshBounds, posed.worldFromObject);
 }
 
-void poseLights(const Moment& open, const Moment& previous, const PosedScene* earlier, PosedScene& posed) {
+void poseLights(const PosedMoment& open, const PosedMoment& previous, const PosedScene* earlier, PosedScene& posed) {
     const std::vector<Light>& lights = posed.scene->lights;
-    const auto frame = [](const Light& light, const Moment& moment) {
+    const auto frame = [](const Light& light, const PosedMoment& moment) {
         return light.node < 0 ? Mat4(1) : moment.nodes.worldFromNode[static_cast<size_t>(light.node)];
     };
     posed.lights.resize(lights.size());
@@ -120,14 +69,52 @@ void poseLights(const Moment& open, const Moment& previous, const PosedScene* ea
     }
 }
 
+/// Motion vectors of a frame refer to the tracks of the frame before, whatever the shutter is now.
+void keepPreviousTracks(const PosedScene& before, PosedScene& posed) {
+    for (size_t i = 0; i < posed.instances.size(); ++i) posed.instances[i].previousTrack = before.instances[i].track;
+    for (size_t i = 0; i < posed.lights.size(); ++i) posed.lights[i].previousTrack = before.lights[i].track;
+}
+
+/// Fills in what moves while the shutter is open, in this frame and in the one before.
+void openShutter(const ShutterTimes& times, bool cut, const PosedScene* before, PosedScene& posed) {
+    const Scene& scene = *posed.scene;
+    const std::vector<Bounds3>& bounds = *posed.meshBounds;
+    const std::vector<PosedMoment> moments = shutterMoments(scene, times.open, times.close, bounds);
+    std::vector<PosedMoment> earlier;
+    if (!cut && !before)
+        earlier = shutterMoments(scene, times.previousOpen, times.previousOpen + times.close - times.open, bounds);
+    parallelRanges(static_cast<int64_t>(posed.instances.size()), 16, [&](int64_t begin, int64_t end) {
+        for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+            PosedInstance& pose = posed.instances[i];
+            pose.track = shutterTrack(scene.instances[i], moments, bounds[i], pose.deformed);
+            if (!earlier.empty())
+                pose.previousTrack = shutterTrack(scene.instances[i], earlier, bounds[i], pose.deformedPrevious);
+            if (cut) pose.previousTrack = pose.track;
+            pose.moves |= pose.track != nullptr;
+        }
+    });
+    for (size_t i = 0; i < posed.lights.size(); ++i) {
+        PosedLight& light = posed.lights[i];
+        light.track = shutterFrames(scene.lights[i], moments);
+        if (!earlier.empty()) light.previousTrack = shutterFrames(scene.lights[i], earlier);
+        if (cut) light.previousTrack = light.track;
+    }
+    if (before) keepPreviousTracks(*before, posed);
+}
+
 }  // namespace
 
 size_t PosedScene::byteCount() const {
     size_t bytes = instances.size() * sizeof(PosedInstance) + lights.size() * sizeof(PosedLight);
-    for (const PosedInstance& instance : instances)
-        if (instance.deformed)
-            bytes += sizeof(Vec3) * (instance.deformed->positions.size() + instance.deformed->normals.size() +
-                                     instance.deformed->tangents.size());
+    const auto sizeOf = [](const DeformedVertices& v) {
+        return sizeof(Vec3) * (v.positions.size() + v.normals.size() + v.tangents.size());
+    };
+    for (const PosedInstance& instance : instances) {
+        if (instance.deformed) bytes += sizeOf(*instance.deformed);
+        // The first of a track's shapes is that of shutter open.
+        for (size_t i = 1; instance.track && i < instance.track->deformed.size(); ++i)
+            bytes += sizeOf(*instance.track->deformed[i]);
+    }
     return bytes;
 }
 
@@ -135,18 +122,19 @@ std::shared_ptr<const PosedScene> poseScene(std::shared_ptr<const Scene> scene, 
                                             const PosedScene* earlier) {
     if (!continues(earlier, *scene, times)) earlier = nullptr;
     const bool animated = !scene->animations.empty();
-    const Moment open = poseMoment(*scene, times.open);
-    std::optional<Moment> otherClose, otherPrevious;
+    const PosedMoment open = poseMoment(*scene, times.open);
+    std::optional<PosedMoment> otherClose, otherPrevious;
     if (animated && times.close != times.open) otherClose = poseMoment(*scene, times.close);
     if (animated && times.previousOpen != times.open) otherPrevious = poseMoment(*scene, times.previousOpen);
-    const Moment& close = otherClose ? *otherClose : open;
-    const Moment& previous = otherPrevious ? *otherPrevious : open;
+    const PosedMoment& close = otherClose ? *otherClose : open;
+    const PosedMoment& previous = otherPrevious ? *otherPrevious : open;
     const bool cut = times.previousOpen == times.open;
 
     auto posed = std::make_shared<PosedScene>();
     posed->scene = scene;
     posed->time = times.open;
     posed->previousTime = times.previousOpen;
+    posed->closeTime = times.close;
     posed->meshBounds = earlier ? earlier->meshBounds : computeMeshBounds(*scene);
     posed->instances.resize(scene->instances.size());
     std::vector<Bounds3> bounds(scene->instances.size());
@@ -163,6 +151,8 @@ std::shared_ptr<const PosedScene> poseScene(std::shared_ptr<const Scene> scene, 
         posed->anythingMoves |= instance.worldFromObject != instance.worldFromObjectPrevious ||
                                 instance.deformed != instance.deformedPrevious;
     poseLights(open, previous, before, *posed);
+    if (animated && times.close != times.open) openShutter(times, cut, before, *posed);
+    else if (before) keepPreviousTracks(*before, *posed);
     return posed;
 }
 

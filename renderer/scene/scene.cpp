@@ -99,6 +99,7 @@ size_t Scene::byteCount() const {
     for (const Instance& instance : instances) meshes.insert(instance.mesh.get());
     for (const Material& m : materials)
         for (const auto texture : kMaterialTextures) addTexture(m.*texture, images);
+    for (const Light& light : lights) addTexture(light.radianceTexture, images);
     size_t bytes = environment.image ? environment.image->bytes() : 0;
     for (const Mesh* mesh : meshes) bytes += mesh->byteCount();
     for (const TextureImage* image : images) bytes += image->byteCount();

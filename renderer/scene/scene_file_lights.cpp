@@ -52,6 +52,9 @@ void readLight(SceneFileContext& context, const JsonMember& member) {
         inner.parameters(describe, activeIds(light, false), kEmissionIds);
         inner.finish();
         reader.parameters(describe, activeIds(light, true));
+        if (light.type == LightType::Rectangle || light.type == LightType::Disk)
+            if (const JsonValue* texture = reader.find(kRadianceTexture.key))
+                light.radianceTexture = readTexture(context, *texture, kRadianceTexture);
         if (light.type == LightType::Spot && light.innerConeDeg > light.outerConeDeg)
             refuseValue(context.tree, *shape, "spot", "an inner cone within the outer");
     }

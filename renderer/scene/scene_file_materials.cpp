@@ -64,7 +64,7 @@ struct TextureRequest {
     bool srgb;
     int material;                     ///< index into scene.materials
     const TextureKey* key;
-    Texture placement;                ///< all but the image
+    Texture placement;                ///< the image comes with loadTextures()
     size_t image = 0;                 ///< index into the distinct images
 };
 
@@ -80,7 +80,7 @@ Texture placedTexture(const TexturePlacement& placement) {
 }
 
 /// `"wood.png"`, or `{"file": "wood.png", "scale": [2, 2]}`, or `{"checker": {"squares": 8}, "scale": [2, 2]}`.
-TextureRequest readTexture(SceneFileContext& context, const JsonValue& value, const TextureKey& key, int material) {
+TextureRequest readRequest(SceneFileContext& context, const JsonValue& value, const TextureKey& key, int material) {
     TextureRequest request{&value, {}, nullptr, {}, key.srgb, material, &key, {}};
     if (value.isString()) {
         request.file = readText(context.tree, value, key.key);
@@ -165,14 +165,19 @@ void loadTextures(SceneFileContext& context, std::vector<TextureRequest>& reques
             throw Error(errors[i]->kind(), {fmt::format("\"{}\": {}", distinct[i]->key->key, errors[i]->what()),
                                             context.tree.where(distinct[i]->value->at), "", ""});
     for (const std::string& text : digests) context.digests += text;
-    for (TextureRequest& request : requests) {
-        Texture& texture = context.scene.materials[static_cast<size_t>(request.material)].*request.key->member;
-        texture = request.placement;
-        texture.image = images[request.image];
-    }
+    for (TextureRequest& request : requests) request.placement.image = images[request.image];
 }
 
 }  // namespace
+
+const TextureKey kRadianceTexture{"radiance-texture", true, nullptr, "Multiplies radiance; upright seen from the front."};
+
+Texture readTexture(SceneFileContext& context, const JsonValue& value, const TextureKey& key) {
+    std::vector<TextureRequest> requests;
+    requests.push_back(readRequest(context, value, key, -1));
+    loadTextures(context, requests);
+    return requests[0].placement;
+}
 
 void readMaterials(SceneFileContext& context, const JsonValue* section) {
     std::vector<TextureRequest> requests;
@@ -184,13 +189,15 @@ void readMaterials(SceneFileContext& context, const JsonValue* section) {
         material.name = member.key;
         for (const TextureKey& key : kTextureKeys)
             if (const JsonValue* value = reader.find(key.key))
-                requests.push_back(readTexture(context, *value, key, index));
+                requests.push_back(readRequest(context, *value, key, index));
         reader.parameters([&](ParameterVisitor& v) { material.describe(v); });
         reader.finish();
         context.materials[member.key] = index;
     }
     if (!requests.empty()) context.report(0.05f, fmt::format("decoding {} textures", requests.size()));
     loadTextures(context, requests);
+    for (const TextureRequest& request : requests)
+        context.scene.materials[static_cast<size_t>(request.material)].*request.key->member = request.placement;
     context.checkStop();
 }
 

@@ -64,6 +64,11 @@ struct TextureKey {
     const char* help;
 };
 extern const std::vector<TextureKey> kTextureKeys;
+/// The flat lights' image, which no material has.
+extern const TextureKey kRadianceTexture;
+
+/// Loads or generates one texture by itself.
+Texture readTexture(SceneFileContext&, const JsonValue& value, const TextureKey& key);
 
 /// How an OBJ of "assets" is subdivided.
 enum class SubdivisionScheme { None, CatmullClark };

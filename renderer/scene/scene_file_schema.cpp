@@ -166,6 +166,10 @@ Json lightSchema() {
         Json all;
         all[kind.name] = closed(ids.empty() ? Json::object() : properties(describe, ids), "What the light is.");
         all.update(properties(describe, activeIds(light, true)));
+        if (light.type == LightType::Rectangle || light.type == LightType::Disk) {
+            all[kRadianceTexture.key] = reference("texture");
+            all[kRadianceTexture.key]["description"] = kRadianceTexture.help;
+        }
         all["parent"] = text("An instance, whose motion the light follows.");
         all.update(placement(false, true));
         all["loop"] = {{"type", "boolean"}, {"default", true}, {"description", "Motion starts again after the last key."}};

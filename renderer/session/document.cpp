@@ -120,11 +120,23 @@ Document::Document(std::shared_ptr<const Scene> scene) : loaded_(scene), edited_
     initial_ = std::make_shared<Document>(*this);
 }
 
-Camera Document::camera() const {
-    Camera camera = cameraAt(*edited_, camera_, time_);
+Camera Document::cameraAt(float time) const {
+    Camera camera = lumi::cameraAt(*edited_, camera_, time);
     const Describe describe = [&](ParameterVisitor& v) { camera.describe(v); };
     for (const auto& [name, value] : cameraEdits_) setParameter(describe, name, value);
     return camera;
+}
+
+CameraTrack Document::cameraTrack() const {
+    constexpr int kSegments = 8;
+    const float open = camera().shutter / render_.fps;
+    CameraTrack track;
+    if (!(open > 0) || !cameraMoves()) return track;
+    for (int i = 0; i <= kSegments; ++i)
+        track.push_back(poseCamera(cameraAt(time_ + open * static_cast<float>(i) / kSegments),
+                                   {render_.width, render_.height}));
+    const bool still = std::all_of(track.begin(), track.end(), [&](const CameraPose& p) { return p == track[0]; });
+    return still ? CameraTrack() : track;
 }
 
 std::vector<std::string> Document::activeInstances() const {

@@ -49,7 +49,10 @@ public:
 
     std::shared_ptr<const Scene> scene() const { return edited_; }    ///< edits of materials, lights, sky applied
     std::shared_ptr<const Scene> loadedScene() const { return loaded_; }  ///< as loaded
-    Camera camera() const;  ///< at the document's time, the user's edits applied
+    Camera camera() const { return cameraAt(time_); }  ///< at the document's time, the user's edits applied
+    Camera cameraAt(float time) const;
+    /// The camera from the opening of its shutter to the closing; empty if it stands still meanwhile.
+    CameraTrack cameraTrack() const;
     int cameraIndex() const { return camera_; }
     Jitter jitter() const { return jitter_; }  ///< Auto: what the first view's module prefers
     float time() const { return time_; }

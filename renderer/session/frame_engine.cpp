@@ -48,9 +48,10 @@ std::optional<FrameOutput> FrameEngine::advance(const FrameRequest& request, std
     const bool replaces = current_ && request.frame == current_->frame;
     const std::optional<Completed>& previous = replaces ? before_ : current_;
 
-    Completed next{request.frame, request.document, request.activeInstances(), {}, Jitter::Auto, nullptr, nullptr, {}};
+    Completed next{request.frame, request.document, request.activeInstances(), {}, Jitter::Auto, nullptr, nullptr, {}, {}, {}};
     const RenderSettings& render = request.document.render();
     next.camera = poseCamera(request.document.camera(), {render.width, render.height});
+    next.cameraTrack = request.document.cameraTrack();
 
     FrameOutput frame;
     frame.changes.cut = !previous || previous->frame + 1 != request.frame ||
@@ -68,6 +69,7 @@ std::optional<FrameOutput> FrameEngine::advance(const FrameRequest& request, std
 
     // Without a cut `previous` holds the frame before; a copy, since it is overwritten below.
     const CameraPose previousCamera = frame.changes.cut ? next.camera : previous->camera;
+    next.previousCameraTrack = frame.changes.cut ? next.cameraTrack : previous->cameraTrack;
     if (!traceSignals(request, previousCamera, replaces, next, timer, stop)) return std::nullopt;
     if (!runModules(request, next, previousCamera, frame, timer, stop)) return std::nullopt;
 
@@ -152,6 +154,9 @@ FrameSampling FrameEngine::sampling(const FrameRequest& request, const Completed
     sampling.seed = static_cast<uint32_t>(render.seed);
     sampling.jitter = next.jitter;
     sampling.path = next.document.path();
+    sampling.shutterOpen = next.camera.shutter > 0;
+    sampling.cameraTrack = next.cameraTrack;
+    sampling.previousCameraTrack = next.previousCameraTrack;
     sampling.wanted = wantedSignals(request);
     return sampling;
 }
@@ -182,6 +187,7 @@ bool FrameEngine::traceSignals(const FrameRequest& request, const CameraPose& pr
     }
     const FrameSampling asked = sampling(request, next, previousCamera);
     if (replaces && current_->scene == next.scene && current_->camera == next.camera &&
+        current_->cameraTrack == next.cameraTrack &&
         current_->signals->available().contains(asked.wanted)) {
         if (!differences(current_->state(), next.state(), *next.scene).sampling) {
             next.signals = current_->signals;

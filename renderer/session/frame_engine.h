@@ -89,6 +89,7 @@ private:
         std::shared_ptr<const PosedScene> scene;
         std::shared_ptr<const Signals> signals;
         TraceCounts rays;
+        CameraTrack cameraTrack, previousCameraTrack;  ///< over the open shutter; empty: the camera stands still
         FrameState state() const { return {document, camera, jitter}; }
     };
     struct Instance {

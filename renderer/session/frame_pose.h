@@ -9,11 +9,12 @@ namespace lumi {
 /// Scene at the document's time, seen from `previousTime`; one of `known` (may be null) is taken if it is just that.
 inline std::shared_ptr<const PosedScene> pose(const Document& document, float previousTime, const PosedScene* earlier,
                                               std::initializer_list<std::shared_ptr<const PosedScene>> known) {
-    const float time = document.time();
+    const float time = document.time(), close = time + document.camera().shutter / document.render().fps;
     for (const auto& posed : known)
-        if (posed && posed->scene == document.scene() && posed->time == time && posed->previousTime == previousTime)
+        if (posed && posed->scene == document.scene() && posed->time == time && posed->closeTime == close &&
+            posed->previousTime == previousTime)
             return posed;
-    return poseScene(document.scene(), {time, time, previousTime}, earlier);
+    return poseScene(document.scene(), {time, close, previousTime}, earlier);
 }
 
 }  // namespace lumi

@@ -14,6 +14,7 @@ std::optional<FrameOutput> FrameEngine::preview(const Document& document, Extent
     FrameSampling sampling;
     sampling.extent = extent;
     sampling.camera = sampling.previousCamera = poseCamera(document.camera(), extent);
+    sampling.shutterOpen = sampling.camera.shutter > 0;
     sampling.seed = static_cast<uint32_t>(document.render().seed);
     sampling.jitter = Jitter::PerPixel;
     sampling.path = document.path();

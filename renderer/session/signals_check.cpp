@@ -58,7 +58,11 @@ std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop
     sampling.path = document.path();
     sampling.wanted = contractSignals();
 
-    const auto first = poseScene(document.scene(), {before, before, before});
+    // With the shutter open every pixel has a time of its own, and the rules hold at that time.
+    const float open = document.camera().shutter / document.render().fps;
+    sampling.shutterOpen = open > 0;
+
+    const auto first = poseScene(document.scene(), {before, before + open, before});
     tracer.bind(first);
     std::vector<FrameCheck> checks{checkFrame(tracer, sampling, stop)};
     checks.back().what = size + ", jitter per pixel";
@@ -70,7 +74,7 @@ std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop
     sampling.previousCamera = sampling.camera;
     sampling.camera = poseCamera(orbited(document.camera(), kOrbitDeg), extent);
     sampling.jitter = Jitter::PerFrame;
-    tracer.bind(poseScene(document.scene(), {document.time(), document.time(), before}, first.get()));
+    tracer.bind(poseScene(document.scene(), {document.time(), document.time() + open, before}, first.get()));
     checks.push_back(checkFrame(tracer, sampling, stop));
     checks.back().what = size + ", jitter per frame, camera moved" + (animated ? ", one frame later" : "");
     return checks;

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 
 #include "math/warp.h"
+#include "trace/sampler.h"
 #include "trace/tracer.h"
 
 namespace lumi {
@@ -11,6 +13,15 @@ float radicalInverse(uint32_t base, uint64_t index) {
     double result = 0, digitWeight = 1.0 / base;
     for (; index > 0; index /= base, digitWeight /= base) result += static_cast<double>(index % base) * digitWeight;
     return static_cast<float>(result);
+}
+
+/// A regular polygon inside the unit circle, uniform in area: a wedge, and a point of its triangle.
+Vec2 samplePolygon(Vec2 u, int corners, float rotation) {
+    const float at = u.x * static_cast<float>(corners);
+    const int wedge = std::min(static_cast<int>(at), corners - 1);
+    const Vec2 b = sampleTriangle({at - static_cast<float>(wedge), u.y});
+    const float step = 2 * kPi / static_cast<float>(corners), angle = rotation + static_cast<float>(wedge) * step;
+    return b.x * Vec2(std::cos(angle), std::sin(angle)) + b.y * Vec2(std::cos(angle + step), std::sin(angle + step));
 }
 
 }  // namespace
@@ -27,7 +38,8 @@ PathStart cameraStart(const CameraPose& camera, Vec2 pixelPosition, Vec2 lens, f
     if (camera.aperture > 0) {
         // The lens ray meets the pinhole ray on the plane in focus.
         const Vec3 inFocus = origin + direction * camera.focus;
-        origin += Vec3(camera.aperture * sampleDisk(lens), 0);
+        const Vec2 onLens = camera.blades > 0 ? samplePolygon(lens, camera.blades, camera.bladeRotation) : sampleDisk(lens);
+        origin += Vec3(camera.aperture * onLens, 0);
         direction = inFocus - origin;
     }
 
@@ -40,6 +52,28 @@ PathStart cameraStart(const CameraPose& camera, Vec2 pixelPosition, Vec2 lens, f
     const float cosine = std::abs(direction.z) * inverseLength;
     start.cone = perspective ? RayCone{0, scale * cosine} : RayCone{scale, 0};
     return start;
+}
+
+namespace {
+
+CameraPose along(const CameraTrack& track, float time) {
+    const TrackPlace place = trackPlace(track.size(), time);
+    if (!(place.fraction > 0)) return track[place.first];
+    return interpolate(track[place.first], track[place.first + 1], place.fraction);
+}
+
+}  // namespace
+
+CameraPose FrameSampling::cameraAt(float time) const { return cameraTrack.empty() ? camera : along(cameraTrack, time); }
+
+CameraPose FrameSampling::previousCameraAt(float time) const {
+    return previousCameraTrack.empty() ? previousCamera : along(previousCameraTrack, time);
+}
+
+float FrameSampling::timeOf(int x, int y, uint64_t sample) const {
+    if (!shutterOpen) return 0;
+    const RandomKey key{static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(sample)};
+    return SampleStream(path.sampler, path.haltonLoop, seed, key).get1(dimension::kTime);
 }
 
 Vec2 frameJitter(uint64_t sampleIndex) {

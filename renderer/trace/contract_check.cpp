@@ -51,8 +51,12 @@ struct CheckedFrame {
         SurfacePoint point;
         point.instance = s.at(0, p.x, p.y), point.primitive = s.at(1, p.x, p.y);
         point.barycentrics = {std::bit_cast<float>(s.at(2, p.x, p.y)), std::bit_cast<float>(s.at(3, p.x, p.y))};
+        point.time = time(p);
         return point;
     }
+    /// When the frame's first sample of the pixel, whose surface it shows, was taken.
+    float time(Pixel p) const { return sampling.timeOf(p.x, p.y, sampling.firstSample); }
+    CameraPose camera(Pixel p) const { return sampling.cameraAt(time(p)); }
     template <class F>
     void eachPixel(F body) const {
         for (int y = 0; y < signals.extent().height; ++y)
@@ -123,7 +127,7 @@ ContractFinding linearDepth(const CheckedFrame& frame) {
     Rule rule("depth is the linear view depth of the position, relative to it", 1e-3);
     frame.eachSurface([&](Pixel p) {
         const double depth = frame.signals[Signal::Depth].at(0, p.x, p.y);
-        const double expected = frame.sampling.camera.project(colourAt(frame.signals[Signal::Position], p)).z;
+        const double expected = frame.camera(p).project(colourAt(frame.signals[Signal::Position], p)).z;
         const double inverse = frame.signals[Signal::InverseDepth].at(0, p.x, p.y);
         rule.check(p, std::max(std::abs(depth - expected) / std::abs(expected), std::abs(inverse * depth - 1)), depth);
     });
@@ -135,8 +139,8 @@ ContractFinding motionVectors(const CheckedFrame& frame) {
     const FrameSampling& s = frame.sampling;
     frame.eachSurface([&](Pixel p) {
         const SurfacePoint point = frame.point(p);
-        const Vec3 now = s.camera.project(frame.tracer.position(point));
-        const Vec3 before = s.previousCamera.project(frame.tracer.previousPosition(point));
+        const Vec3 now = frame.camera(p).project(frame.tracer.position(point));
+        const Vec3 before = s.previousCameraAt(point.time).project(frame.tracer.previousPosition(point));
         if (!(before.z > 0) && s.previousCamera.projection == Projection::Perspective) return;
         const Vec3 motion = colourAt(frame.signals[Signal::Motion], p);
         const double error = std::hypot(before.x - now.x - motion.x, before.y - now.y - motion.y);
@@ -152,7 +156,7 @@ ContractFinding jitterDistribution(const CheckedFrame& frame) {
     double count = 0;
     Vec2 first(-1);
     const auto offsetAt = [&](Pixel p) {
-        const Vec3 at = frame.sampling.camera.project(colourAt(frame.signals[Signal::Position], p));
+        const Vec3 at = frame.camera(p).project(colourAt(frame.signals[Signal::Position], p));
         return Vec2(at.x - static_cast<float>(p.x), at.y - static_cast<float>(p.y));
     };
     frame.eachSurface([&](Pixel p) {

@@ -14,15 +14,18 @@ RTCScene EmbreeScene::newScene() const {
     return scene;
 }
 
-RTCGeometry EmbreeScene::newTriangles(const Vec3* positions, size_t vertexCount, const Mesh& mesh,
+RTCGeometry EmbreeScene::newTriangles(std::span<const Vec3* const> positions, size_t vertexCount, const Mesh& mesh,
                                       const Mat4* transform, bool filtered) const {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<Vec3*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), vertexCount));
-    if (vertices && transform)
-        for (size_t i = 0; i < vertexCount; ++i) vertices[i] = transformPoint(*transform, positions[i]);
-    else if (vertices)
-        std::memcpy(static_cast<void*>(vertices), positions, vertexCount * sizeof(Vec3));
+    rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(positions.size()));
+    for (unsigned step = 0; step < positions.size(); ++step) {
+        auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, step,
+                                                                    RTC_FORMAT_FLOAT3, sizeof(Vec3), vertexCount));
+        if (vertices && transform)
+            for (size_t i = 0; i < vertexCount; ++i) vertices[i] = transformPoint(*transform, positions[step][i]);
+        else if (vertices)
+            std::memcpy(static_cast<void*>(vertices), positions[step], vertexCount * sizeof(Vec3));
+    }
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
                                sizeof(UVec3), mesh.triangles.size());
     if (filtered) {
@@ -34,30 +37,42 @@ RTCGeometry EmbreeScene::newTriangles(const Vec3* positions, size_t vertexCount,
     return geometry;
 }
 
+RTCGeometry EmbreeScene::newDeforming(const Plan& plan, const DeformedVertices& open) const {
+    std::vector<const Vec3*> steps;
+    if (plan.track)
+        for (const auto& shape : plan.track->deformed) steps.push_back(shape->positions.data());
+    if (steps.empty()) steps.push_back(open.positions.data());
+    return newTriangles(steps, open.positions.size(), *plan.mesh, nullptr, plan.filtered);
+}
+
 RTCGeometry EmbreeScene::newBody(const Plan& plan) const {
-    const LightShape& shape = plan.shape;
-    RTCGeometry geometry = nullptr;
-    if (shape.type == LightType::Rectangle) {
-        geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_QUAD);
-        const Vec3 corners[] = {shape.centre - shape.halfX - shape.halfY, shape.centre + shape.halfX - shape.halfY,
-                                shape.centre + shape.halfX + shape.halfY, shape.centre - shape.halfX + shape.halfY};
-        const uint32_t indices[] = {0, 1, 2, 3};
-        void* v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), 4);
-        void* q = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, sizeof(indices), 1);
-        if (v) std::memcpy(v, corners, sizeof(corners));
-        if (q) std::memcpy(q, indices, sizeof(indices));
-    } else {
-        const bool disk = shape.type == LightType::Disk;
-        geometry =
-            rtcNewGeometry(device_, disk ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT : RTC_GEOMETRY_TYPE_SPHERE_POINT);
-        const Vec4 point(shape.centre, shape.radius);
-        void* v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, sizeof(Vec4), 1);
-        if (v) std::memcpy(v, &point, sizeof(point));
-        if (disk) {
-            void* n = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), 1);
-            if (n) std::memcpy(n, &shape.normal, sizeof(Vec3));
+    std::span<const LightShape> shapes = plan.shutterShapes;
+    if (shapes.empty()) shapes = {&plan.shape, 1};
+    const bool rectangle = plan.shape.type == LightType::Rectangle, disk = plan.shape.type == LightType::Disk;
+    RTCGeometry geometry = rtcNewGeometry(device_, rectangle ? RTC_GEOMETRY_TYPE_QUAD
+                                                   : disk    ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT
+                                                             : RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(shapes.size()));
+    const auto set = [&](RTCBufferType type, unsigned slot, RTCFormat format, const auto& values) {
+        using Value = std::remove_cvref_t<decltype(values[0])>;
+        void* data = rtcSetNewGeometryBuffer(geometry, type, slot, format, sizeof(Value), std::size(values));
+        if (data) std::memcpy(data, &values[0], sizeof(values));
+    };
+    for (unsigned step = 0; step < shapes.size(); ++step) {
+        const LightShape& s = shapes[step];
+        if (rectangle) {
+            const Vec3 corners[] = {s.centre - s.halfX - s.halfY, s.centre + s.halfX - s.halfY,
+                                    s.centre + s.halfX + s.halfY, s.centre - s.halfX + s.halfY};
+            set(RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3, corners);
+            continue;
         }
+        const Vec4 point[] = {Vec4(s.centre, s.radius)};
+        set(RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT4, point);
+        const Vec3 normal[] = {s.normal};
+        if (disk) set(RTC_BUFFER_TYPE_NORMAL, step, RTC_FORMAT_FLOAT3, normal);
     }
+    const glm::uvec4 corners[] = {{0, 1, 2, 3}};
+    if (rectangle) set(RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, corners);
     rtcCommitGeometry(geometry);
     return geometry;
 }

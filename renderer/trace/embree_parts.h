@@ -16,6 +16,16 @@ struct EmbreeScene::Plan {
     const Mesh* mesh = nullptr;
     Mat4 worldFromObject{1};  ///< Direct and Instanced
     LightShape shape;         ///< bodies, radiance left out
+    std::shared_ptr<const ShutterTrack> track;  ///< meshes that move while the shutter is open
+    std::vector<LightShape> shutterShapes;      ///< bodies that do, at equally spaced moments
+
+    /// Of the instance at the moments of the open shutter, mostly one.
+    std::span<const Mat4> transforms() const {
+        static const Mat4 identity(1);
+        if (mode == Mode::MovingBody) return {&identity, 1};
+        if (track) return track->worldFromObject;
+        return {&worldFromObject, 1};
+    }
 
     bool sameAttachment(const Plan& other) const {
         if (mode != other.mode || filtered != other.filtered || mesh != other.mesh) return false;

@@ -51,12 +51,17 @@ std::vector<EmbreeScene::Plan> EmbreeScene::makePlans(const PosedScene& posed) c
         if (instance.light >= 0 && hasBody(scene.lights[static_cast<size_t>(instance.light)].type)) {
             const auto light = static_cast<size_t>(instance.light);
             plan.mode = moves ? Mode::MovingBody : Mode::Body;
-            plan.shape = lightShape(scene.lights[light], posed.lights[light].worldFromLight);
-            plan.shape.radiance = Vec3(0);
+            const PosedLight& frames = posed.lights[light];
+            plan.shape = lightShape(scene.lights[light], frames.worldFromLight);
+            plan.shutterShapes = lightShapes(scene.lights[light], frames.track);
+            const auto forgetEmission = [](LightShape& shape) { shape.radiance = Vec3(0), shape.texture = nullptr; };
+            forgetEmission(plan.shape);
+            for (LightShape& shape : plan.shutterShapes) forgetEmission(shape);
         } else if (!plan.mesh || plan.mesh->triangles.empty()) {
             plan.mode = Mode::None;
         } else {
             plan.filtered = hasAlpha(scene, instance);
+            plan.track = pose.track;
             plan.mode = pose.deformed ? Mode::Deforming : moves || uses[plan.mesh] > 1 ? Mode::Instanced : Mode::Direct;
         }
     }

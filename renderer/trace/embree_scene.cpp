@@ -109,8 +109,10 @@ void attachSingle(RTCScene scene, RTCGeometry geometry) {
     rtcReleaseGeometry(geometry);
 }
 
-void setTransform(RTCGeometry instance, const Mat4& matrix) {
-    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &matrix[0][0]);
+void setTransforms(RTCGeometry instance, std::span<const Mat4> matrices) {
+    rtcSetGeometryTimeStepCount(instance, static_cast<unsigned>(matrices.size()));
+    for (unsigned step = 0; step < matrices.size(); ++step)
+        rtcSetGeometryTransform(instance, step, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &matrices[step][0][0]);
     rtcCommitGeometry(instance);
 }
 
@@ -125,8 +127,9 @@ void EmbreeScene::makeAttachment(const PosedScene& posed, uint32_t index) {
         return;
     }
     if (plan.mode == Mode::Direct) {
-        a.geometry = newTriangles(plan.mesh->positions.data(), plan.mesh->positions.size(), *plan.mesh,
-                                  &plan.worldFromObject, plan.filtered);
+        const Vec3* positions = plan.mesh->positions.data();
+        a.geometry = newTriangles({&positions, 1}, plan.mesh->positions.size(), *plan.mesh, &plan.worldFromObject,
+                                  plan.filtered);
         a.world = static_cast<const Vec3*>(rtcGetGeometryBufferData(a.geometry, RTC_BUFFER_TYPE_VERTEX, 0));
         return;
     }
@@ -140,14 +143,12 @@ void EmbreeScene::makeAttachment(const PosedScene& posed, uint32_t index) {
             attachSingle(a.own, newBody(plan));
         } else {
             a.deformed = posed.instances[index].deformed;
-            attachSingle(a.own, newTriangles(a.deformed->positions.data(), a.deformed->positions.size(), *plan.mesh,
-                                             nullptr, plan.filtered));
+            attachSingle(a.own, newDeforming(plan, *a.deformed));
         }
     }
     a.geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(a.geometry, target);
-    rtcSetGeometryTimeStepCount(a.geometry, 1);
-    setTransform(a.geometry, plan.mode == Mode::MovingBody ? Mat4(1) : plan.worldFromObject);
+    setTransforms(a.geometry, plan.transforms());
 }
 
 void EmbreeScene::rebuild(const PosedScene& posed, std::vector<Plan> plans) {
@@ -167,8 +168,8 @@ void EmbreeScene::rebuild(const PosedScene& posed, std::vector<Plan> plans) {
     parallelFor(static_cast<int64_t>(meshScenes_.size()), [&](int64_t i) {
         MeshScene& m = meshScenes_[static_cast<size_t>(i)];
         m.scene = newScene();
-        attachSingle(m.scene,
-                     newTriangles(m.mesh->positions.data(), m.mesh->positions.size(), *m.mesh, nullptr, m.filtered));
+        const Vec3* positions = m.mesh->positions.data();
+        attachSingle(m.scene, newTriangles({&positions, 1}, m.mesh->positions.size(), *m.mesh, nullptr, m.filtered));
     });
     parallelFor(static_cast<int64_t>(plans_.size()),
                 [&](int64_t i) { makeAttachment(posed, static_cast<uint32_t>(i)); });
@@ -194,21 +195,22 @@ bool EmbreeScene::update(const PosedScene& posed, std::vector<Plan> plans) {
         const auto i = static_cast<size_t>(index);
         const Plan& plan = plans[i];
         Attachment& a = attachments_[i];
-        const bool reshaped = plan.mode == Mode::MovingBody && !(plan.shape == plans_[i].shape);
-        const bool deformed = plan.mode == Mode::Deforming && posed.instances[i].deformed != a.deformed;
+        const bool otherTrack = plan.track != plans_[i].track;
+        const bool reshaped = plan.mode == Mode::MovingBody && (!(plan.shape == plans_[i].shape) ||
+                                                                plan.shutterShapes != plans_[i].shutterShapes);
+        const bool deformed =
+            plan.mode == Mode::Deforming && (posed.instances[i].deformed != a.deformed || otherTrack);
         const bool carried = (plan.mode == Mode::Instanced || plan.mode == Mode::Deforming) &&
-                             plan.worldFromObject != plans_[i].worldFromObject;
+                             (plan.worldFromObject != plans_[i].worldFromObject || otherTrack);
         if (!reshaped && !deformed && !carried) return;
         changed[i] = 1;
         if (reshaped || deformed) {
             rebuilt[i] = 1;
             rtcDetachGeometry(a.own, 0);
             if (deformed) a.deformed = posed.instances[i].deformed;
-            attachSingle(a.own, reshaped ? newBody(plan)
-                                         : newTriangles(a.deformed->positions.data(), a.deformed->positions.size(),
-                                                        *plan.mesh, nullptr, plan.filtered));
+            attachSingle(a.own, reshaped ? newBody(plan) : newDeforming(plan, *a.deformed));
         }
-        if (carried) setTransform(a.geometry, plan.worldFromObject);
+        if (carried) setTransforms(a.geometry, plan.transforms());
     });
     plans_ = std::move(plans);
     bool any = false;

@@ -2,6 +2,7 @@
 #include <embree3/rtcore.h>
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "scene/posed_scene.h"
@@ -15,6 +16,7 @@ class RayRecorder;
 ///   meshes that are shared or move: Embree instances of a scene a mesh, built once;
 ///   deforming meshes: Embree instances of a scene of their own, rebuilt for each pose;
 ///   light bodies (rectangle, disk, sphere): exact geometry, in a scene of their own if they move.
+/// What moves while the shutter is open has several time steps, straight between them; rays say when they fly.
 /// Scenes are built robust (no leaks at shared edges) at medium quality. Rebuilding rather than refitting keeps a frame
 /// independent of the frames before it.
 ///
@@ -55,8 +57,10 @@ private:
     void rebuild(const PosedScene& posed, std::vector<Plan> plans);
     bool update(const PosedScene& posed, std::vector<Plan> plans);
     RTCScene newScene() const;
-    RTCGeometry newTriangles(const Vec3* positions, size_t vertexCount, const Mesh& mesh, const Mat4* transform,
-                             bool filtered) const;
+    /// Triangles with vertices for each of equally spaced moments of the open shutter, mostly one.
+    RTCGeometry newTriangles(std::span<const Vec3* const> positions, size_t vertexCount, const Mesh& mesh,
+                             const Mat4* transform, bool filtered) const;
+    RTCGeometry newDeforming(const Plan& plan, const DeformedVertices& open) const;
     RTCGeometry newBody(const Plan& plan) const;
     void makeAttachment(const PosedScene& posed, uint32_t index);
     void throwIfFailed(const char* step) const;

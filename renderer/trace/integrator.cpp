@@ -208,14 +208,15 @@ void Integrator::shade(PathBatch& batch, uint32_t row, int depth, std::span<cons
 
 void Integrator::shadeMiss(PathState& path, int depth, PathVertex* vertex, PathBatch& batch) const {
     const bool certain = depth == 0 || path.scatterPdf <= 0 || settings_.strategy == DirectStrategy::Bsdf;
-    const LightReceiver* receiver = certain ? nullptr : &path.scatter;
-    const Vec3 radiance = scene_.lights.escaped(path.ray.direction, depth == 0, receiver, [&](float lightPdf) {
-        if (lightPdf <= 0) return 1.0f;
-        return settings_.strategy == DirectStrategy::Light ? 0.0f : misWeight(path.scatterPdf, lightPdf);
-    });
+    const auto weight = [&](float pdf) {
+        return pdf <= 0 ? 1 : settings_.strategy == DirectStrategy::Light ? 0 : misWeight(path.scatterPdf, pdf);
+    };
+    const Vec3 radiance = scene_.lights.escaped(path.ray.direction, path.ray.time, depth == 0,
+                                                certain ? nullptr : &path.scatter, weight);
     const Vec3 emitted = isBlack(radiance) ? radiance : limited(path, radiance, depth);
     add(batch, path, path.throughput * emitted);
     if (!vertex) return;
+    vertex->point.time = path.ray.time;
     vertex->wo = -path.ray.direction;
     vertex->distance = kInfinity;
     vertex->throughput = path.throughput;

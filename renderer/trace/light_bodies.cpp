@@ -42,8 +42,9 @@ bool sampleSphereLight(const LightShape& sphere, const Vec3& position, Vec2 u, L
 
 }  // namespace
 
-bool Lights::sampleBody(const BodyRecord& body, const Vec3& position, Vec2 u, LightSample& out) const {
-    const LightShape& shape = body.shape;
+bool Lights::sampleBody(const BodyRecord& body, const LightReceiver& receiver, Vec2 u, LightSample& out) const {
+    const LightShape shape = body.at(receiver.time);
+    const Vec3& position = receiver.position;
     out.radiance = shape.radiance;
     out.hittable = body.instance != BodyRecord::kNone;
     if (shape.type == LightType::Sphere) return sampleSphereLight(shape, position, u, out);
@@ -64,6 +65,7 @@ bool Lights::sampleBody(const BodyRecord& body, const Vec3& position, Vec2 u, Li
         const Vec2 p = shape.type == LightType::Disk ? sampleDisk(u) : 2.0f * u - Vec2(1);
         out.position = shape.centre + p.x * shape.halfX + p.y * shape.halfY;
     }
+    if (shape.texture) out.radiance = shape.radianceAt(shape.nameOf(out.position));
     const Vec3 toLight = out.position - position;
     const float distance2 = glm::dot(toLight, toLight);
     out.distance = std::sqrt(distance2);
@@ -77,7 +79,7 @@ float Lights::pdfBody(int bodyIndex, const LightReceiver& receiver, const Vec3& 
                       const Vec3& hitPosition) const {
     const Vec3& position = receiver.position;
     const BodyRecord& body = tables_->bodies[static_cast<size_t>(bodyIndex)];
-    const LightShape& shape = body.shape;
+    const LightShape shape = body.at(receiver.time);
     const float pick = pickProbability(receiver, firstBody_ + static_cast<uint32_t>(bodyIndex));
     if (!(pick > 0)) return 0;
     if (shape.type == LightType::Sphere) {

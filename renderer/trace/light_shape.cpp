@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "scene/posed_scene.h"
+
 namespace lumi {
 namespace {
 
@@ -44,6 +46,15 @@ Vec3 LightShape::position(Vec2 uv) const {
     return centre + (2 * uv.x - 1) * halfX + (2 * uv.y - 1) * halfY;
 }
 
+Vec3 LightShape::texel(Vec2 uv) const { return Vec3(texture->sample(Vec2(1) - uv)); }
+
+float LightShape::meanLuminance() const {
+    const float factor = luminance(radiance);
+    if (!texture) return factor;
+    // The widest footprint is the whole image; what is dark there may still have small lights in it.
+    return luminance(radiance * Vec3(texture->sample(Vec2(0.5f), 1))) + 1e-3f * factor;
+}
+
 Vec3 LightShape::normalAt(Vec2 uv) const {
     return type == LightType::Sphere ? frameOf(*this).toWorld(directionFromOctahedron(uv)) : normal;
 }
@@ -59,19 +70,27 @@ Vec2 LightShape::nameOf(const Vec3& positionWorld) const {
     return Vec2((px * yy - py * xy) / determinant, (py * xx - px * xy) / determinant) * 0.5f + Vec2(0.5f);
 }
 
+namespace {
+
+bool areOrthogonal(const Vec3& a, const Vec3& b) {
+    return std::abs(glm::dot(a, b)) <= 1e-5f * glm::length(a) * glm::length(b);
+}
+
+}  // namespace
+
 LightShape lightShape(const Light& light, const Mat4& worldFromLight) {
     const Vec3 axisX(worldFromLight[0]), axisY(worldFromLight[1]), axisZ(worldFromLight[2]);
     LightShape shape;
     shape.type = light.type;
     shape.radiance = light.radiance * light.power;
+    if (light.radianceTexture && light.type != LightType::Sphere) shape.texture = &light.radianceTexture;
     shape.centre = Vec3(worldFromLight[3]);
     shape.normal = unitOr(-(normalMatrix(worldFromLight) * Vec3(0, 0, 1)), Vec3(0, 0, -1));
     if (light.type == LightType::Rectangle) {
         shape.halfX = axisX * (0.5f * light.size.x);
         shape.halfY = axisY * (0.5f * light.size.y);
         shape.area = 4 * glm::length(glm::cross(shape.halfX, shape.halfY));
-        shape.rightAngled =
-            std::abs(glm::dot(shape.halfX, shape.halfY)) <= 1e-5f * glm::length(shape.halfX) * glm::length(shape.halfY);
+        shape.rightAngled = areOrthogonal(shape.halfX, shape.halfY);
         return shape;
     }
     const float scaleXy = 0.5f * (glm::length(axisX) + glm::length(axisY));
@@ -86,7 +105,41 @@ LightShape lightShape(const Light& light, const Mat4& worldFromLight) {
     shape.halfX = axisX, shape.halfY = axisY;
     const Frame frame = frameOf(shape);
     shape.halfX = frame.x * shape.radius;
-    shape.halfY = frame.y * shape.radius;
+    shape.halfY = -frame.y * shape.radius;
+    return shape;
+}
+
+std::vector<LightShape> lightShapes(const Light& light, std::span<const Mat4> worldFromLight) {
+    std::vector<LightShape> shapes;
+    for (const Mat4& frame : worldFromLight) shapes.push_back(lightShape(light, frame));
+    return shapes;
+}
+
+LightShape shapeAt(std::span<const LightShape> shapes, float time) {
+    const TrackPlace place = trackPlace(shapes.size(), time);
+    if (!(place.fraction > 0)) return shapes[place.first];
+    const LightShape &a = shapes[place.first], &b = shapes[place.first + 1];
+    const float t = place.fraction;
+    LightShape shape = a;
+    shape.centre = glm::mix(a.centre, b.centre, t);
+    shape.halfX = glm::mix(a.halfX, b.halfX, t);
+    shape.halfY = glm::mix(a.halfY, b.halfY, t);
+    shape.normal = unitOr(glm::mix(a.normal, b.normal, t), a.normal);
+    shape.radius = glm::mix(a.radius, b.radius, t);
+    if (shape.type == LightType::Rectangle) {
+        const Vec3 across = glm::cross(shape.halfX, shape.halfY);
+        shape.area = 4 * glm::length(across);
+        shape.normal = unitOr(glm::dot(across, a.normal) < 0 ? -across : across, a.normal);
+        shape.rightAngled = areOrthogonal(shape.halfX, shape.halfY);
+    } else if (shape.type == LightType::Sphere) {
+        shape.area = 4 * kPi * sqr(shape.radius);
+    } else {
+        // A disk in the plane across its normal, as it is intersected.
+        const Frame frame = frameOf(shape);
+        shape.halfX = frame.x * shape.radius;
+        shape.halfY = -frame.y * shape.radius;
+        shape.area = kPi * sqr(shape.radius);
+    }
     return shape;
 }
 

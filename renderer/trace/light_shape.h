@@ -1,4 +1,7 @@
 #pragma once
+#include <span>
+#include <vector>
+
 #include "math/transform.h"
 #include "scene/light.h"
 
@@ -20,13 +23,21 @@ struct LightShape {
     float area = 1;                       ///< m^2, of the emitting side
     bool rightAngled = true;              ///< halfX and halfY are orthogonal
     Vec3 radiance{1};
+    const Texture* texture = nullptr;     ///< of the flat ones: times radiance, level 0; it belongs to the scene
 
+    /// Radiance of the point named (u, v). Seen from the front, u grows to the left and v upwards.
+    Vec3 radianceAt(Vec2 uv) const { return texture ? radiance * texel(uv) : radiance; }
+    /// Mean luminance over the body; not 0 while some of it shines.
+    float meanLuminance() const;
     /// World position of the point named (u, v), and its outward unit normal.
     Vec3 position(Vec2 uv) const;
     Vec3 normalAt(Vec2 uv) const;
     /// The name of the body's point nearest to `positionWorld`.
     Vec2 nameOf(const Vec3& positionWorld) const;
     bool operator==(const LightShape&) const = default;
+
+private:
+    Vec3 texel(Vec2 uv) const;
 };
 
 /// True for the light types that have a body.
@@ -37,5 +48,11 @@ inline bool hasBody(LightType type) {
 /// The shape of `light`, which has a body, under its transform. Spheres and disks take the mean scale of the axes that
 /// span them.
 LightShape lightShape(const Light& light, const Mat4& worldFromLight);
+
+/// Its shapes under several.
+std::vector<LightShape> lightShapes(const Light& light, std::span<const Mat4> worldFromLight);
+
+/// The shape between equally spaced moments of the open shutter, `time` from 0 to 1: corners and rims go straight.
+LightShape shapeAt(std::span<const LightShape> shapes, float time);
 
 }  // namespace lumi

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "math/warp.h"
+#include "trace/moving_triangle.h"
 #include "trace/surface.h"
 
 namespace lumi {
@@ -32,7 +33,7 @@ float Lights::infiniteImportance(const LightReceiver& receiver, uint32_t infinit
     const Sun& sun = suns_[infinite];
     float cosine = 1;
     if (receiver.facing != Facing::Any) {
-        cosine = glm::dot(receiver.normal, sun.towards);
+        cosine = glm::dot(receiver.normal, towards(sun, receiver.time));
         if (receiver.facing == Facing::Both) cosine = std::abs(cosine);
         // Of the part of its disk that stands highest over the receiver.
         const float cosHalf = 1 - sun.oneMinusCos;
@@ -93,7 +94,6 @@ bool Lights::sample(const LightReceiver& receiver, Vec2 pick, Vec2 u, LightSampl
     if (picks_.empty()) return false;
     const Choice chosen = choose(receiver, pick);
     if (chosen.entry == kNone || !(chosen.probability > 0)) return false;
-    const Vec3& position = receiver.position;
     const Entry& entry = entries_[chosen.entry];
     out.light = static_cast<int>(chosen.entry);
     out.delta = false;
@@ -102,16 +102,16 @@ bool Lights::sample(const LightReceiver& receiver, Vec2 pick, Vec2 u, LightSampl
     bool reached = false;
     switch (entry.kind) {
         case Kind::Triangle:
-            reached = sampleTriangle(triangles_[entry.index], position, u, out);
+            reached = sampleTriangle(triangles_[entry.index], receiver, u, out);
             break;
         case Kind::Body:
-            reached = sampleBody(tables_->bodies[entry.index], position, u, out);
+            reached = sampleBody(tables_->bodies[entry.index], receiver, u, out);
             break;
         case Kind::Point:
-            reached = samplePoint(points_[entry.index], position, out);
+            reached = samplePoint(points_[entry.index], receiver, out);
             break;
         case Kind::Directional:
-            reached = sampleSun(suns_[entry.index], u, out);
+            reached = sampleSun(suns_[entry.index], receiver.time, u, out);
             break;
         case Kind::Environment:
             out.direction = out.position = environment_.sample(u, out.pdf, out.skyPlace);
@@ -124,12 +124,27 @@ bool Lights::sample(const LightReceiver& receiver, Vec2 pick, Vec2 u, LightSampl
     return reached && out.pdf > 0 && (out.sky || maxComponent(out.radiance) > 0);
 }
 
-bool Lights::sampleTriangle(const Triangle& triangle, const Vec3& position, Vec2 u, LightSample& out) const {
+Lights::Triangle Lights::triangleAt(const Triangle& triangle, float time) const {
+    const InstanceRecord& instance = tables_->instances[triangle.instance];
+    if (!instance.track) return triangle;
+    const MovingTriangle moving(instance, triangle.primitive, time);
+    const Vec3 corner = moving.corner(0);
+    return {corner, moving.corner(1) - corner, moving.corner(2) - corner, triangle.instance, triangle.primitive};
+}
+
+Mat4 Lights::frameAt(int track, float time) const {
+    const std::vector<Mat4>& frames = tracks_[static_cast<size_t>(track)];
+    const TrackPlace place = trackPlace(frames.size(), time);
+    return frames[place.first] * (1 - place.fraction) + frames[place.first + 1] * place.fraction;
+}
+
+bool Lights::sampleTriangle(const Triangle& atOpen, const LightReceiver& receiver, Vec2 u, LightSample& out) const {
     const Vec2 b = lumi::sampleTriangle(u);
+    const Triangle triangle = triangleAt(atOpen, receiver.time);
     const InstanceRecord& instance = tables_->instances[triangle.instance];
     const MaterialRecord& material = tables_->materials[instance.materialOf(triangle.primitive)];
     out.position = triangle.corner + triangle.edge1 * b.x + triangle.edge2 * b.y;
-    const Vec3 toLight = out.position - position;
+    const Vec3 toLight = out.position - receiver.position;
     const float distance2 = glm::dot(toLight, toLight);
     const Vec3 cross = glm::cross(triangle.edge1, triangle.edge2);
     const float twiceArea = glm::length(cross);
@@ -146,32 +161,38 @@ bool Lights::sampleTriangle(const Triangle& triangle, const Vec3& position, Vec2
     return true;
 }
 
-bool Lights::samplePoint(const Point& point, const Vec3& position, LightSample& out) const {
-    const Vec3 toLight = point.position - position;
+bool Lights::samplePoint(const Point& point, const LightReceiver& receiver, LightSample& out) const {
+    Vec3 place = point.position, axis = point.axis;
+    if (point.track >= 0) {
+        const Mat4 frame = frameAt(point.track, receiver.time);
+        place = Vec3(frame[3]), axis = glm::normalize(-Vec3(frame[2]));
+    }
+    const Vec3 toLight = place - receiver.position;
     const float distance2 = glm::dot(toLight, toLight);
     if (!(distance2 > 0)) return false;
     out.distance = std::sqrt(distance2);
     out.direction = toLight / out.distance;
     const float spot =
-        std::clamp(-glm::dot(point.axis, out.direction) * point.spotScale + point.spotOffset, 0.0f, 1.0f);
+        std::clamp(-glm::dot(axis, out.direction) * point.spotScale + point.spotOffset, 0.0f, 1.0f);
     const float window =
         std::isfinite(point.range) ? std::clamp(1 - sqr(sqr(out.distance / point.range)), 0.0f, 1.0f) : 1;
     out.radiance = point.intensity * (sqr(spot) * window / distance2);
-    out.position = out.target = point.position;
+    out.position = out.target = place;
     out.pdf = 1;
     out.delta = true;
     out.hittable = false;
     return true;
 }
 
-bool Lights::sampleSun(const Sun& sun, Vec2 u, LightSample& out) const {
+bool Lights::sampleSun(const Sun& sun, float time, Vec2 u, LightSample& out) const {
+    const Vec3 middle = towards(sun, time);
     out.distance = kInfinity;
     if (sun.oneMinusCos > 0) {
-        out.direction = glm::normalize(Frame(sun.towards).toWorld(sampleCone(u, sun.oneMinusCos)));
+        out.direction = glm::normalize(Frame(middle).toWorld(sampleCone(u, sun.oneMinusCos)));
         out.pdf = pdfCone(sun.oneMinusCos);
         out.radiance = sun.radiance;
     } else {
-        out.direction = sun.towards;
+        out.direction = middle;
         out.pdf = 1;
         out.radiance = sun.irradiance;
         out.delta = true;
@@ -185,7 +206,7 @@ float Lights::pdfTriangle(uint32_t instance, uint32_t primitive, const LightRece
                           const Vec3& hitPosition, const Vec3& hitNormal) const {
     const int entry = entryOf(instance, primitive);
     if (entry < 0) return 0;
-    const Triangle& triangle = triangles_[entries_[static_cast<size_t>(entry)].index];
+    const Triangle triangle = triangleAt(triangles_[entries_[static_cast<size_t>(entry)].index], receiver.time);
     const float area = 0.5f * glm::length(glm::cross(triangle.edge1, triangle.edge2));
     const float cosine = std::abs(glm::dot(hitNormal, direction));
     const Vec3 toLight = hitPosition - receiver.position;

@@ -59,11 +59,12 @@ public:
                       const Vec3& hitPosition, const Vec3& hitNormal) const;
     float pdfBody(int body, const LightReceiver& receiver, const Vec3& direction, const Vec3& hitPosition) const;
 
-    /// Radiance that a path finds that leaves the scene along `direction`: the sky, and directional lights with an
+    /// Radiance that a path finds that leaves the scene along `direction` at `time`: the sky, and directional lights with an
     /// angle unless `cameraRay` (they are not seen directly); weighted by `weight(pdf)` of the density of sample() for
     /// each, which is asked for `receiver` (null: nothing samples lights, weights are 1).
     template <class Weight>
-    Vec3 escaped(const Vec3& direction, bool cameraRay, const LightReceiver* receiver, Weight&& weight) const;
+    Vec3 escaped(const Vec3& direction, float time, bool cameraRay, const LightReceiver* receiver,
+                 Weight&& weight) const;
 
     const EnvironmentLight& environment() const { return environment_; }
     /// Probability of choosing an entry for `receiver`; over all entries they add up to 1, or to less where lights were
@@ -85,12 +86,14 @@ private:
     };
     struct Point {
         Vec3 position, axis, intensity;
+        int track = -1;  ///< into tracks_ if it moves while the shutter is open
         float range = kInfinity, spotScale = 0, spotOffset = 1;  ///< angular fall-off: clamp(cos scale + offset)^2
     };
     struct Sun {
         Vec3 towards, radiance, irradiance;
         float oneMinusCos = 0;  ///< 0: a delta
         float sine = 0;         ///< of half its angle
+        int track = -1;
     };
     /// What building collects.
     struct Collected {
@@ -112,16 +115,24 @@ private:
     float infiniteImportance(const LightReceiver& receiver) const;
     float treeShare(const LightReceiver& receiver, float elsewhere) const;
 
-    bool sampleTriangle(const Triangle& triangle, const Vec3& position, Vec2 u, LightSample& out) const;
-    bool sampleBody(const BodyRecord& body, const Vec3& position, Vec2 u, LightSample& out) const;
-    bool samplePoint(const Point& point, const Vec3& position, LightSample& out) const;
-    bool sampleSun(const Sun& sun, Vec2 u, LightSample& out) const;
+    bool sampleTriangle(const Triangle& triangle, const LightReceiver& receiver, Vec2 u, LightSample& out) const;
+    bool sampleBody(const BodyRecord& body, const LightReceiver& receiver, Vec2 u, LightSample& out) const;
+    bool samplePoint(const Point& point, const LightReceiver& receiver, LightSample& out) const;
+    bool sampleSun(const Sun& sun, float time, Vec2 u, LightSample& out) const;
+    /// As they are at one time of the open shutter.
+    Triangle triangleAt(const Triangle& triangle, float time) const;
+    Mat4 frameAt(int track, float time) const;
+    int addTrack(const std::vector<Mat4>& frames);
+    Vec3 towards(const Sun& sun, float time) const {
+        return sun.track < 0 ? sun.towards : glm::normalize(Vec3(frameAt(sun.track, time)[2]));
+    }
 
     const SceneTables* tables_ = nullptr;
     std::vector<Entry> entries_;
     std::vector<Triangle> triangles_;
     std::vector<Point> points_;
     std::vector<Sun> suns_;
+    std::vector<std::vector<Mat4>> tracks_;  ///< frames of moving points and suns
     std::vector<uint32_t> firstTriangle_;  ///< of each instance, into triangleEntry_; kNone: it does not emit
     std::vector<uint32_t> triangleEntry_;  ///< entry of each triangle of emitting instances, kNone if it does not emit
     uint32_t firstBody_ = 0;               ///< entry
@@ -134,7 +145,8 @@ private:
 };
 
 template <class Weight>
-Vec3 Lights::escaped(const Vec3& direction, bool cameraRay, const LightReceiver* receiver, Weight&& weight) const {
+Vec3 Lights::escaped(const Vec3& direction, float time, bool cameraRay, const LightReceiver* receiver,
+                     Weight&& weight) const {
     Vec3 sum(0);
     const auto pick = [&](size_t infinite) {
         return receiver ? pickProbability(*receiver, finiteCount_ + static_cast<uint32_t>(infinite)) : 0.0f;
@@ -148,7 +160,7 @@ Vec3 Lights::escaped(const Vec3& direction, bool cameraRay, const LightReceiver*
         const Sun& sun = suns_[i];
         if (sun.oneMinusCos <= 0) continue;
         // 1 - cos of the angle between two unit vectors, without cancellation.
-        const Vec3 difference = direction - sun.towards;
+        const Vec3 difference = direction - towards(sun, time);
         if (0.5f * glm::dot(difference, difference) > sun.oneMinusCos) continue;
         sum += sun.radiance * weight(pick(i) / (2 * kPi * sun.oneMinusCos));
     }

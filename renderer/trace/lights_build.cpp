@@ -31,7 +31,7 @@ float triangleLuminance(const MaterialRecord& material, const InstanceRecord& in
 void Lights::build(const PosedScene& posed, const SceneTables& tables) {
     tables_ = &tables;
     environment_.build(posed.scene->environment);
-    entries_.clear(), triangles_.clear(), points_.clear(), suns_.clear();
+    entries_.clear(), triangles_.clear(), points_.clear(), suns_.clear(), tracks_.clear();
     Collected collected;
     addTriangles(collected);
     addBodies(collected);
@@ -65,19 +65,26 @@ LightBounds triangleBounds(const Vec3& corner, const Vec3& edge1, const Vec3& ed
     return bounds;
 }
 
+/// Bounds of one light over two moments: it does not shine twice.
+LightBounds swept(const LightBounds& a, const LightBounds& b) {
+    LightBounds both = unite(a, b);
+    both.intensity = std::max(a.intensity, b.intensity);
+    return both;
+}
+
 LightBounds bodyBounds(const LightShape& shape) {
     LightBounds bounds;
     if (shape.type == LightType::Sphere) {
         bounds.box = {shape.centre - Vec3(shape.radius), shape.centre + Vec3(shape.radius)};
         bounds.cosSpread = -1;
-        bounds.intensity = kPi * sqr(shape.radius) * luminance(shape.radiance);
+        bounds.intensity = kPi * sqr(shape.radius) * shape.meanLuminance();
         return bounds;
     }
     const Vec3 x = glm::abs(shape.halfX), y = glm::abs(shape.halfY);
     const Vec3 half = shape.type == LightType::Disk ? glm::sqrt(x * x + y * y) : x + y;
     bounds.box = {shape.centre - half, shape.centre + half};
     bounds.axis = shape.normal;
-    bounds.intensity = shape.area * luminance(shape.radiance);
+    bounds.intensity = shape.area * shape.meanLuminance();
     return bounds;
 }
 
@@ -130,7 +137,14 @@ void Lights::addTriangles(Collected& collected) {
         const InstanceRecord& r = instances[t.instance];
         const bool bothSides = tables_->materials[r.materialOf(t.primitive)].doubleSided;
         collected.weights.push_back(kPi * intensity[k] * (bothSides ? 2 : 1));
-        collected.bounds.push_back(triangleBounds(t.corner, t.edge1, t.edge2, r.mirrored, bothSides, intensity[k]));
+        LightBounds bounds = triangleBounds(t.corner, t.edge1, t.edge2, r.mirrored, bothSides, intensity[k]);
+        // Wherever it comes while the shutter is open.
+        const size_t moments = !r.track ? 0 : std::max(r.track->worldFromObject.size(), r.track->deformed.size());
+        for (size_t m = 1; m < moments; ++m) {
+            const Triangle later = triangleAt(t, static_cast<float>(m) / static_cast<float>(moments - 1));
+            bounds = swept(bounds, triangleBounds(later.corner, later.edge1, later.edge2, r.mirrored, bothSides, 0));
+        }
+        collected.bounds.push_back(bounds);
     }
 }
 
@@ -139,9 +153,17 @@ void Lights::addBodies(Collected& collected) {
     for (size_t i = 0; i < tables_->bodies.size(); ++i) {
         const LightShape& shape = tables_->bodies[i].shape;
         entries_.push_back({Kind::Body, static_cast<uint32_t>(i)});
-        collected.weights.push_back(kPi * shape.area * luminance(shape.radiance));
-        collected.bounds.push_back(bodyBounds(shape));
+        collected.weights.push_back(kPi * shape.area * shape.meanLuminance());
+        LightBounds bounds = bodyBounds(shape);
+        for (const LightShape& later : tables_->bodies[i].shutterShapes) bounds = swept(bounds, bodyBounds(later));
+        collected.bounds.push_back(bounds);
     }
+}
+
+int Lights::addTrack(const std::vector<Mat4>& frames) {
+    if (frames.size() < 2) return -1;
+    tracks_.push_back(frames);
+    return static_cast<int>(tracks_.size()) - 1;
 }
 
 void Lights::addPoints(const PosedScene& posed, Collected& collected) {
@@ -149,7 +171,9 @@ void Lights::addPoints(const PosedScene& posed, Collected& collected) {
         const Light& light = posed.scene->lights[i];
         if (light.type != LightType::Point && light.type != LightType::Spot) continue;
         const Mat4& frame = posed.lights[i].worldFromLight;
-        Point point{Vec3(frame[3]), glm::normalize(-Vec3(frame[2])), light.intensity * light.power, light.range, 0, 1};
+        const std::vector<Mat4>& frames = posed.lights[i].track;
+        Point point{Vec3(frame[3]), glm::normalize(-Vec3(frame[2])), light.intensity * light.power, addTrack(frames),
+                    light.range, 0, 1};
         LightBounds bounds{{point.position, point.position}, point.axis, -1, 0, false, luminance(point.intensity)};
         float solidAngle = 4 * kPi;
         if (light.type == LightType::Spot) {
@@ -161,6 +185,12 @@ void Lights::addPoints(const PosedScene& posed, Collected& collected) {
             solidAngle = 2 * kPi * (1 - 0.5f * (cosInner + cosOuter));
             bounds.cosSpread = 1;
             bounds.cosReach = std::max(cosOuter - 1e-6f, 0.0f);
+        }
+        for (const Mat4& later : frames) {
+            LightBounds moved = bounds;
+            moved.box = {Vec3(later[3]), Vec3(later[3])};
+            moved.axis = glm::normalize(-Vec3(later[2]));
+            bounds = swept(bounds, moved);
         }
         entries_.push_back({Kind::Point, static_cast<uint32_t>(points_.size())});
         points_.push_back(point);
@@ -177,6 +207,7 @@ void Lights::addInfinite(const PosedScene& posed, Collected& collected) {
         Sun sun;
         sun.towards = glm::normalize(Vec3(posed.lights[i].worldFromLight[2]));
         sun.irradiance = light.irradiance * light.power;
+        sun.track = addTrack(posed.lights[i].track);
         if (light.angleDeg > 0) {
             const float half = std::min(radians(light.angleDeg) * 0.5f, kPi / 2);
             sun.oneMinusCos = 2 * sqr(std::sin(half / 2));

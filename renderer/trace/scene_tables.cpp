@@ -55,6 +55,7 @@ InstanceRecord makeInstance(const PosedScene& posed, const EmbreeScene& embree, 
     r.worldFromObject = pose.worldFromObject;
     r.normalFromObject = pose.normalFromObject;
     r.mirrored = isMirroring(pose.worldFromObject);
+    r.track = pose.track.get();
     if (!instance.mesh) return r;
     const Mesh& mesh = *instance.mesh;
     r.triangles = dataOrNull(mesh.triangles);
@@ -81,10 +82,14 @@ InstanceRecord makeInstance(const PosedScene& posed, const EmbreeScene& embree, 
         r.deformedTangents = dataOrNull(pose.deformed->tangents);
         count = pose.deformed->positions.size();
     }
-    const Mat4& m = r.worldFromObject;
     float largestRow = 0;
-    for (int row = 0; row < 3; ++row)
-        largestRow = std::max(largestRow, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
+    const auto addRows = [&](const Mat4& m) {
+        for (int row = 0; row < 3; ++row)
+            largestRow = std::max(largestRow, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
+    };
+    addRows(r.worldFromObject);
+    if (r.track)
+        for (const Mat4& m : r.track->worldFromObject) addRows(m);
     const bool known = !pose.deformed && posed.meshBounds && index < posed.meshBounds->size();
     const Vec3 corners[] = {known ? (*posed.meshBounds)[index].lower : Vec3(0),
                             known ? (*posed.meshBounds)[index].upper : Vec3(0)};
@@ -114,6 +119,8 @@ SceneTables makeSceneTables(const PosedScene& posed, const EmbreeScene& embree) 
         body.light = static_cast<int>(i);
         body.shape = lightShape(scene.lights[i], posed.lights[i].worldFromLight);
         body.previousShape = lightShape(scene.lights[i], posed.lights[i].worldFromLightPrevious);
+        body.shutterShapes = lightShapes(scene.lights[i], posed.lights[i].track);
+        body.previousShutterShapes = lightShapes(scene.lights[i], posed.lights[i].previousTrack);
         for (size_t k = 0; k < scene.instances.size(); ++k)
             if (scene.instances[k].light == static_cast<int>(i)) {
                 body.instance = static_cast<uint32_t>(k);

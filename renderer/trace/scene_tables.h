@@ -27,6 +27,7 @@ struct InstanceRecord {
     float objectScale = 0;  ///< largest |coordinate| that the transform's products reach: bounds rounding errors
     Mat4 worldFromObject{1};
     Mat3 normalFromObject{1};
+    const ShutterTrack* track = nullptr;  ///< where it is while the shutter is open; null: as above all the time
 
     uint32_t materialOf(uint32_t primitive) const { return triangleMaterial ? triangleMaterial[primitive] : material; }
 };
@@ -54,9 +55,15 @@ struct MaterialRecord {
 /// A light with a body, by index into Scene::lights.
 struct BodyRecord {
     LightShape shape, previousShape;
+    std::vector<LightShape> shutterShapes, previousShutterShapes;  ///< at moments of the open shutter; empty: it is still
     int light = -1;
     uint32_t instance = kNone;  ///< that shows it; kNone: it cannot be hit
     static constexpr uint32_t kNone = ~0u;
+
+    LightShape at(float time) const { return shutterShapes.empty() ? shape : shapeAt(shutterShapes, time); }
+    LightShape previousAt(float time) const {
+        return previousShutterShapes.empty() ? previousShape : shapeAt(previousShutterShapes, time);
+    }
 };
 
 /// Flat tables of a posed scene.

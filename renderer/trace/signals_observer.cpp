@@ -136,7 +136,8 @@ void SignalsObserver::set3(Signal signal, int x, int y, const Vec3& value) {
 void SignalsObserver::writeGeometry(uint32_t slot, const PathVertex& v) {
     const int width = sampling_.extent.width;
     const int x = static_cast<int>(slot) % width, y = static_cast<int>(slot) / width;
-    const CameraPose& camera = sampling_.camera;
+    const CameraPose moved = sampling_.cameraTrack.empty() ? CameraPose() : sampling_.cameraAt(v.point.time);
+    const CameraPose& camera = sampling_.cameraTrack.empty() ? sampling_.camera : moved;
     set3(Signal::Normal, x, y, v.normal);
     set3(Signal::GeometricNormal, x, y, v.geometricNormal);
     set3(Signal::ObjectNormal, x, y, v.objectNormal);
@@ -151,7 +152,7 @@ void SignalsObserver::writeGeometry(uint32_t slot, const PathVertex& v) {
     }
     if (wanted_.has(Signal::Motion))
         set3(Signal::Motion, x, y,
-             surfaceMotion(camera, sampling_.previousCamera, v.position,
+             surfaceMotion(camera, sampling_.previousCameraAt(v.point.time), v.position,
                            previousSurfacePosition(scene_.tables, *scene_.posed, v.point)));
     if (wanted_.has(Signal::Roughness)) signals_[Signal::Roughness].at(0, x, y) = v.roughness;
     if (wanted_.has(Signal::ObjectId)) signals_.ids(Signal::ObjectId).at(0, x, y) = v.point.instance + 1;
@@ -174,7 +175,7 @@ void SignalsObserver::writeSky(uint32_t slot, const PathVertex& v) {
     if (wanted_.has(Signal::InverseDepth)) signals_[Signal::InverseDepth].at(0, x, y) = 0;
     if (wanted_.has(Signal::DepthGradient))
         for (int c = 0; c < 2; ++c) signals_[Signal::DepthGradient].at(c, x, y) = 0;
-    set3(Signal::Motion, x, y, skyMotion(sampling_.camera, sampling_.previousCamera, -v.wo));
+    set3(Signal::Motion, x, y, skyMotion(sampling_.cameraAt(v.point.time), sampling_.previousCameraAt(v.point.time), -v.wo));
     if (wanted_.has(Signal::Roughness)) signals_[Signal::Roughness].at(0, x, y) = 1;
     if (wanted_.has(Signal::ObjectId)) signals_.ids(Signal::ObjectId).at(0, x, y) = 0;
     if (wanted_.has(Signal::MaterialId)) signals_.ids(Signal::MaterialId).at(0, x, y) = 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trace/coverage.h"
+#include "trace/moving_triangle.h"
 #include "trace/surface_material.h"
 
 namespace lumi {
@@ -74,7 +75,7 @@ uint32_t materialOf(const SceneTables& tables, const SurfacePoint& point) {
 
 Surface bodySurface(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo) {
     const InstanceRecord& r = tables.instances[point.instance];
-    const LightShape& shape = tables.bodies[static_cast<size_t>(r.body)].shape;
+    const LightShape shape = tables.bodies[static_cast<size_t>(r.body)].at(point.time);
     Surface s;
     s.point = point;
     s.body = r.body;
@@ -84,7 +85,7 @@ Surface bodySurface(const SceneTables& tables, const SurfacePoint& point, const 
     s.frontFace = glm::dot(s.outwardNormal, wo) > 0;
     s.normal = s.geometricNormal = s.frontFace ? s.outwardNormal : -s.outwardNormal;
     s.offset = shape.type == LightType::Sphere ? shape.radius * 2e-4f : 0;
-    s.emitted = s.frontFace ? shape.radiance : Vec3(0);
+    s.emitted = s.frontFace ? shape.radianceAt(point.barycentrics) : Vec3(0);
     s.inputs.baseColor = Vec3(0);
     s.inputs.specular = 0;
     s.inputs.roughness = 1;
@@ -115,14 +116,16 @@ SurfacePoint surfacePoint(const SceneTables& tables, const RawHit& hit, const Ve
     const int body = tables.instances[hit.instance].body;
     if (body >= 0) {
         point.primitive = 0;
-        point.barycentrics = tables.bodies[static_cast<size_t>(body)].shape.nameOf(hitPosition);
+        point.barycentrics = tables.bodies[static_cast<size_t>(body)].at(time).nameOf(hitPosition);
     }
     return point;
 }
 
-SurfaceGeometry surfaceGeometry(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo, float width) {
-    const InstanceRecord& r = tables.instances[point.instance];
-    const UVec3 t = r.triangles[point.primitive];
+namespace {
+
+/// The two below of a triangle of `r`, whose corners are its vertices `t`.
+SurfaceGeometry geometryOf(const SceneTables& tables, const InstanceRecord& r, const UVec3& t, const SurfacePoint& point,
+                           const Vec3& wo, float width) {
     const Vec2 b = point.barycentrics;
 
     // Position and geometric normal, in the space of the vertices, then in the world.
@@ -153,17 +156,8 @@ SurfaceGeometry surfaceGeometry(const SceneTables& tables, const SurfacePoint& p
     return g;
 }
 
-Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo, float width) {
-    const bool body = tables.instances[point.instance].body >= 0;
-    const SurfaceGeometry geometry = body ? SurfaceGeometry() : surfaceGeometry(tables, point, wo, width);
-    return evaluateSurface(tables, point, geometry, wo, MipFilter::Between);
-}
-
-Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, const SurfaceGeometry& geometry,
-                        const Vec3& wo, MipFilter mips) {
-    const InstanceRecord& r = tables.instances[point.instance];
-    if (r.body >= 0) return bodySurface(tables, point, wo);
-    const UVec3 t = r.triangles[point.primitive];
+Surface surfaceOf(const SceneTables& tables, const InstanceRecord& r, const UVec3& t, const SurfacePoint& point,
+                  const SurfaceGeometry& geometry, const Vec3& wo, MipFilter mips) {
     const Vec2 b = point.barycentrics;
     const Vec3 &edge1 = geometry.edge1, &edge2 = geometry.edge2;
     Surface s;
@@ -220,6 +214,30 @@ Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, co
     return s;
 }
 
+}  // namespace
+
+SurfaceGeometry surfaceGeometry(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo, float width) {
+    const InstanceRecord& r = tables.instances[point.instance];
+    if (!r.track) return geometryOf(tables, r, r.triangles[point.primitive], point, wo, width);
+    const MovingTriangle moving(r, point.primitive, point.time);
+    return geometryOf(tables, moving.instance(), MovingTriangle::kCorners, point, wo, width);
+}
+
+Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, const SurfaceGeometry& geometry,
+                        const Vec3& wo, MipFilter mips) {
+    const InstanceRecord& r = tables.instances[point.instance];
+    if (r.body >= 0) return bodySurface(tables, point, wo);
+    if (!r.track) return surfaceOf(tables, r, r.triangles[point.primitive], point, geometry, wo, mips);
+    const MovingTriangle moving(r, point.primitive, point.time);
+    return surfaceOf(tables, moving.instance(), MovingTriangle::kCorners, point, geometry, wo, mips);
+}
+
+Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo, float width) {
+    const bool body = tables.instances[point.instance].body >= 0;
+    const SurfaceGeometry geometry = body ? SurfaceGeometry() : surfaceGeometry(tables, point, wo, width);
+    return evaluateSurface(tables, point, geometry, wo, MipFilter::Between);
+}
+
 Vec3 restNormal(const SceneTables& tables, const Surface& s) {
     const InstanceRecord& r = tables.instances[s.point.instance];
     if (r.body >= 0) return s.normal;
@@ -230,40 +248,6 @@ Vec3 restNormal(const SceneTables& tables, const Surface& s) {
         rest = glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x]);
     }
     return unitOr(s.frontFace ? rest : -rest, Vec3(0, 1, 0));
-}
-
-Vec3 smoothNormal(const SceneTables& tables, const SurfacePoint& point) {
-    const InstanceRecord& r = tables.instances[point.instance];
-    if (r.body >= 0) return tables.bodies[static_cast<size_t>(r.body)].shape.normalAt(point.barycentrics);
-    const UVec3 t = r.triangles[point.primitive];
-    const Vec3 edge1 = r.positions[t.y] - r.positions[t.x], edge2 = r.positions[t.z] - r.positions[t.x];
-    Vec3 outward = glm::cross(edge1, edge2);
-    if (!r.inWorld) outward = r.normalFromObject * outward;
-    else if (r.mirrored) outward = -outward;
-    outward = unitOr(outward, Vec3(0, 1, 0));
-    return r.normals ? unitOr(r.normalFromObject * interpolate(r.normals, t, point.barycentrics), outward) : outward;
-}
-
-Vec3 surfacePosition(const SceneTables& tables, const SurfacePoint& point) {
-    const InstanceRecord& r = tables.instances[point.instance];
-    if (r.body >= 0) return tables.bodies[static_cast<size_t>(r.body)].shape.position(point.barycentrics);
-    const UVec3 t = r.triangles[point.primitive];
-    const Vec3 p0 = r.positions[t.x];
-    const Vec3 p = p0 + (r.positions[t.y] - p0) * point.barycentrics.x + (r.positions[t.z] - p0) * point.barycentrics.y;
-    return r.inWorld ? p : transformPoint(r.worldFromObject, p);
-}
-
-Vec3 previousSurfacePosition(const SceneTables& tables, const PosedScene& posed, const SurfacePoint& point) {
-    const InstanceRecord& r = tables.instances[point.instance];
-    if (r.body >= 0) return tables.bodies[static_cast<size_t>(r.body)].previousShape.position(point.barycentrics);
-    const PosedInstance& pose = posed.instances[point.instance];
-    const bool still = pose.worldFromObject == pose.worldFromObjectPrevious && pose.deformed == pose.deformedPrevious;
-    if (still) return surfacePosition(tables, point);
-    const Vec3* positions = pose.deformedPrevious ? pose.deformedPrevious->positions.data() : r.restPositions;
-    const UVec3 t = r.triangles[point.primitive];
-    const Vec3 p0 = positions[t.x];
-    const Vec3 p = p0 + (positions[t.y] - p0) * point.barycentrics.x + (positions[t.z] - p0) * point.barycentrics.y;
-    return transformPoint(pose.worldFromObjectPrevious, p);
 }
 
 Vec3 triangleEmission(const SceneTables& tables, uint32_t instance, uint32_t primitive, Vec2 barycentrics) {

@@ -45,11 +45,12 @@ bool shadesAlike(const PosedScene& a, const PosedScene& b) {
     if (a.scene != b.scene) return false;
     for (size_t i = 0; i < a.instances.size(); ++i)
         if (a.instances[i].worldFromObject != b.instances[i].worldFromObject ||
-            a.instances[i].deformed != b.instances[i].deformed)
+            a.instances[i].deformed != b.instances[i].deformed || a.instances[i].track != b.instances[i].track)
             return false;
     for (size_t i = 0; i < a.lights.size(); ++i)
         if (a.lights[i].worldFromLight != b.lights[i].worldFromLight ||
-            a.lights[i].worldFromLightPrevious != b.lights[i].worldFromLightPrevious)
+            a.lights[i].worldFromLightPrevious != b.lights[i].worldFromLightPrevious ||
+            a.lights[i].track != b.lights[i].track || a.lights[i].previousTrack != b.lights[i].previousTrack)
             return false;
     return true;
 }
@@ -142,12 +143,16 @@ void makeStarts(const FrameSampling& sampling, int left, int top, uint64_t sampl
             const RandomKey key{static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(sample)};
             const bool lens = sampling.camera.aperture > 0;
             Vec2 within = common, onLens(0.5f);
-            if (sampling.jitter == Jitter::PerPixel || lens) {
+            float time = 0;
+            if (sampling.jitter == Jitter::PerPixel || lens || sampling.shutterOpen) {
                 const SampleStream stream(sampling.path.sampler, sampling.path.haltonLoop, sampling.seed, key);
                 if (sampling.jitter == Jitter::PerPixel) within = stream.get2(dimension::kPixel);
                 if (lens) onLens = stream.get2(dimension::kLens);
+                if (sampling.shutterOpen) time = stream.get1(dimension::kTime);
             }
-            PathStart start = cameraStart(sampling.camera, Vec2(x, y) + within, onLens, 0);
+            const Vec2 place = Vec2(x, y) + within;
+            PathStart start = sampling.cameraTrack.empty() ? cameraStart(sampling.camera, place, onLens, time)
+                                                           : cameraStart(sampling.cameraAt(time), place, onLens, time);
             start.key = key;
             start.slot = static_cast<uint32_t>(y * sampling.extent.width + x);
             starts.push_back(start);

@@ -35,6 +35,15 @@ struct FrameSampling {
     Jitter jitter = Jitter::PerPixel;  ///< not Auto
     PathSettings path;
     SignalSet wanted;
+    /// Camera rays fly at times in [0, 1) of the open shutter, else at 0; and the cameras over that time, if they move:
+    /// `camera` and `previousCamera` are those of the opening then.
+    bool shutterOpen = false;
+    CameraTrack cameraTrack, previousCameraTrack;
+
+    CameraPose cameraAt(float time) const;
+    CameraPose previousCameraAt(float time) const;
+    /// When the camera ray of a pixel's sample flies.
+    float timeOf(int x, int y, uint64_t sample) const;
 };
 
 struct TraceCounts {

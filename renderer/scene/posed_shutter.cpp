@@ -1,0 +1,173 @@
+#include "scene/posed_shutter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/bounds.h"
+#include "scene/deform.h"
+
+namespace lumi {
+namespace {
+
+/// How far from the straight way something may stray between two moments, as a part of its size.
+constexpr float kMostStray = 1e-3f;
+
+bool equalSpans(std::span<const float> a, std::span<const float> b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+bool equalSpans(std::span<const Mat4> a, std::span<const Mat4> b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+
+Mat4 between(const Mat4& a, const Mat4& b, float t) { return t > 0 ? a * (1 - t) + b * t : a; }
+
+/// Does `truth`, at `part` of the way from a to b, lie off the straight way for some corner of the box?
+bool strays(const Mat4& a, const Mat4& truth, const Mat4& b, float part, const Bounds3& box) {
+    if (a == truth && a == b) return false;
+    const Mat4 difference = between(a, b, part) - truth;
+    const Bounds3 world = transformedBounds(box, truth);
+    const float allowed = kMostStray * std::max(world.radius(), 1e-6f);
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 p(corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
+                     corner & 4 ? box.upper.z : box.lower.z);
+        if (glm::length(Vec3(difference * Vec4(p, 1))) > allowed) return true;
+    }
+    return false;
+}
+
+/// The same for all that moves or bends an instance.
+bool strays(const Instance& instance, const PosedMoment& a, const PosedMoment& truth, const PosedMoment& b, float part,
+            const Bounds3& meshBounds) {
+    if (meshBounds.empty()) return false;
+    if (strays(placementOf(instance, a), placementOf(instance, truth), placementOf(instance, b), part, meshBounds))
+        return true;
+    const auto weightsA = morphWeightsOf(instance, a), weights = morphWeightsOf(instance, truth),
+               weightsB = morphWeightsOf(instance, b);
+    for (size_t i = 0; i < weights.size() && i < weightsA.size() && i < weightsB.size(); ++i)
+        if (std::abs(glm::mix(weightsA[i], weightsB[i], part) - weights[i]) > kMostStray) return true;
+    const auto jointsA = jointsOf(instance, a), joints = jointsOf(instance, truth), jointsB = jointsOf(instance, b);
+    for (size_t j = 0; j < joints.size(); ++j)
+        if (strays(jointsA[j], joints[j], jointsB[j], part, meshBounds)) return true;
+    return false;
+}
+
+bool standsStill(const Instance& instance, std::span<const PosedMoment> moments) {
+    const Mat4 first = placementOf(instance, moments[0]);
+    const bool bends = deforms(instance);
+    return std::all_of(moments.begin(), moments.end(), [&](const PosedMoment& moment) {
+        return placementOf(instance, moment) == first && (!bends || deformsAlike(instance, moments[0], moment));
+    });
+}
+
+/// Every `stride`-th moment is enough.
+bool suffices(const Instance& instance, std::span<const PosedMoment> moments, size_t stride, const Bounds3& bounds) {
+    for (size_t i = 0; i < moments.size(); ++i) {
+        const size_t first = i / stride * stride;
+        if (i == first) continue;
+        const float part = static_cast<float>(i - first) / static_cast<float>(stride);
+        if (strays(instance, moments[first], moments[i], moments[first + stride], part, bounds)) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+PosedMoment poseMoment(const Scene& scene, float time) {
+    PosedMoment moment{poseNodes(scene, time), {}};
+    for (const Skin& skin : scene.skins) moment.joints.push_back(jointMatrices(skin, moment.nodes));
+    return moment;
+}
+
+bool isSkinned(const Instance& instance) { return instance.skin >= 0 && !instance.mesh->skin.empty(); }
+
+bool deforms(const Instance& instance) { return !instance.mesh->morphTargets.empty() || isSkinned(instance); }
+
+Mat4 placementOf(const Instance& instance, const PosedMoment& moment) {
+    if (instance.node < 0 || isSkinned(instance)) return Mat4(1);
+    return moment.nodes.worldFromNode[static_cast<size_t>(instance.node)];
+}
+
+std::span<const float> morphWeightsOf(const Instance& instance, const PosedMoment& moment) {
+    if (instance.node < 0) return {};
+    return moment.nodes.morphWeights[static_cast<size_t>(instance.node)];
+}
+
+std::span<const Mat4> jointsOf(const Instance& instance, const PosedMoment& moment) {
+    if (!isSkinned(instance)) return {};
+    return moment.joints[static_cast<size_t>(instance.skin)];
+}
+
+bool deformsAlike(const Instance& instance, const PosedMoment& a, const PosedMoment& b) {
+    return &a == &b || (equalSpans(morphWeightsOf(instance, a), morphWeightsOf(instance, b)) &&
+                        equalSpans(jointsOf(instance, a), jointsOf(instance, b)));
+}
+
+std::shared_ptr<const DeformedVertices> deformAt(const Instance& instance, const PosedMoment& moment) {
+    return std::make_shared<const DeformedVertices>(
+        deform(*instance.mesh, morphWeightsOf(instance, moment), jointsOf(instance, moment)));
+}
+
+std::vector<PosedMoment> shutterMoments(const Scene& scene, float open, float close,
+                                        std::span<const Bounds3> meshBounds) {
+    std::vector<PosedMoment> moments{poseMoment(scene, open), poseMoment(scene, close)};
+    while (moments.size() - 1 < kMostShutterSegments) {
+        std::vector<PosedMoment> finer;
+        const size_t segments = 2 * (moments.size() - 1);
+        bool straight = true;
+        for (size_t i = 0; i + 1 < moments.size(); ++i) {
+            const auto part = static_cast<float>(2 * i + 1) / static_cast<float>(segments);
+            PosedMoment middle = poseMoment(scene, glm::mix(open, close, part));
+            for (size_t k = 0; k < scene.instances.size() && straight; ++k)
+                straight = !strays(scene.instances[k], moments[i], middle, moments[i + 1], 0.5f, meshBounds[k]);
+            finer.push_back(moments[i]);
+            finer.push_back(std::move(middle));
+        }
+        // A wave that crosses the straight way at its middle shows a quarter further on: two segments at least.
+        if (straight && moments.size() > 2) break;
+        finer.push_back(moments.back());
+        moments = std::move(finer);
+    }
+    return moments;
+}
+
+std::shared_ptr<const ShutterTrack> shutterTrack(const Instance& instance, std::span<const PosedMoment> moments,
+                                                 const Bounds3& meshBounds,
+                                                 std::shared_ptr<const DeformedVertices> deformed) {
+    if (standsStill(instance, moments)) return nullptr;
+    size_t stride = moments.size() - 1;
+    while (stride > 1 && !suffices(instance, moments, stride, meshBounds)) stride /= 2;
+    auto track = std::make_shared<ShutterTrack>();
+    bool moves = false, bends = false;
+    for (const PosedMoment& moment : moments) {
+        moves |= placementOf(instance, moment) != placementOf(instance, moments[0]);
+        bends |= deforms(instance) && !deformsAlike(instance, moments[0], moment);
+    }
+    for (size_t i = 0; i < moments.size(); i += stride) {
+        if (moves || i == 0) track->worldFromObject.push_back(placementOf(instance, moments[i]));
+        if (bends) track->deformed.push_back(i == 0 && deformed ? deformed : deformAt(instance, moments[i]));
+    }
+    return track;
+}
+
+std::vector<Mat4> shutterFrames(const Light& light, std::span<const PosedMoment> moments) {
+    std::vector<Mat4> frames;
+    if (light.node < 0) return frames;
+    for (const PosedMoment& moment : moments)
+        frames.push_back(moment.nodes.worldFromNode[static_cast<size_t>(light.node)]);
+    const bool still = std::all_of(frames.begin(), frames.end(), [&](const Mat4& m) { return m == frames[0]; });
+    return still ? std::vector<Mat4>() : frames;
+}
+
+Mat4 ShutterTrack::worldFromObjectAt(float time) const {
+    const TrackPlace place = trackPlace(worldFromObject.size(), time);
+    if (place.fraction <= 0) return worldFromObject[place.first];
+    return between(worldFromObject[place.first], worldFromObject[place.first + 1], place.fraction);
+}
+
+Mat4 PosedLight::worldFromLightAt(float time) const {
+    if (track.empty()) return worldFromLight;
+    const TrackPlace place = trackPlace(track.size(), time);
+    return between(track[place.first], track[place.first + 1], place.fraction);
+}
+
+}  // namespace lumi

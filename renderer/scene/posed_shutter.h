@@ -1,0 +1,43 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "scene/node_pose.h"
+#include "scene/posed_scene.h"
+
+namespace lumi {
+
+/// Node tree and joints at one moment.
+struct PosedMoment {
+    NodePose nodes;
+    std::vector<std::vector<Mat4>> joints;  ///< for each skin
+};
+
+PosedMoment poseMoment(const Scene& scene, float time);
+
+/// What of a moment places an instance and gives it its shape.
+bool isSkinned(const Instance& instance);
+bool deforms(const Instance& instance);
+Mat4 placementOf(const Instance& instance, const PosedMoment& moment);
+std::span<const float> morphWeightsOf(const Instance& instance, const PosedMoment& moment);
+std::span<const Mat4> jointsOf(const Instance& instance, const PosedMoment& moment);
+bool deformsAlike(const Instance& instance, const PosedMoment& a, const PosedMoment& b);
+std::shared_ptr<const DeformedVertices> deformAt(const Instance& instance, const PosedMoment& moment);
+
+/// Moments from `open` to `close` seconds, a power of two and one more of them, so close to each other that between two of
+/// them everything goes straight, within a thousandth of its size; at most kMostShutterSegments and one more.
+/// `meshBounds` as in PosedScene.
+constexpr size_t kMostShutterSegments = 64;
+std::vector<PosedMoment> shutterMoments(const Scene& scene, float open, float close,
+                                        std::span<const Bounds3> meshBounds);
+
+/// An instance's track over such moments, with as few of them as it needs; null if it stands still. `deformed` is its
+/// shape at the first of them, if it has one already.
+std::shared_ptr<const ShutterTrack> shutterTrack(const Instance& instance, std::span<const PosedMoment> moments,
+                                                 const Bounds3& meshBounds,
+                                                 std::shared_ptr<const DeformedVertices> deformed);
+
+/// A light's frames over the moments; empty if it stands still.
+std::vector<Mat4> shutterFrames(const Light& light, std::span<const PosedMoment> moments);
+
+}  // namespace lumi

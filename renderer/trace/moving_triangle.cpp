@@ -1,0 +1,48 @@
+#include "trace/moving_triangle.h"
+
+namespace lumi {
+namespace {
+
+/// Copies a corner's values and lets `source` point to the copies; attributes that are not there stay so.
+template <class T>
+void take(const T*& source, const UVec3& t, T* copies) {
+    if (!source) return;
+    for (int c = 0; c < 3; ++c) copies[c] = source[t[c]];
+    source = copies;
+}
+
+}  // namespace
+
+MovingTriangle::MovingTriangle(const InstanceRecord& instance, const ShutterTrack& track, const UVec3& t, float time)
+    : instance_(instance) {
+    instance_.worldFromObject = track.worldFromObjectAt(time);
+    instance_.normalFromObject = normalMatrix(instance_.worldFromObject);
+    instance_.mirrored = isMirroring(instance_.worldFromObject);
+    if (track.deformed.empty()) {
+        take(instance_.positions, t, positions_);
+        take(instance_.normals, t, normals_);
+        take(instance_.deformedTangents, t, deformedTangents_);
+    } else {
+        const TrackPlace place = trackPlace(track.deformed.size(), time);
+        const DeformedVertices& a = *track.deformed[place.first];
+        const DeformedVertices& b = *track.deformed[place.fraction > 0 ? place.first + 1 : place.first];
+        const auto between = [&](const std::vector<Vec3>& from, const std::vector<Vec3>& to, Vec3* out) {
+            for (int c = 0; c < 3; ++c)
+                out[c] = from[t[c]] * (1 - place.fraction) + to[t[c]] * place.fraction;
+        };
+        between(a.positions, b.positions, positions_);
+        instance_.positions = positions_;
+        if (!a.normals.empty()) between(a.normals, b.normals, normals_), instance_.normals = normals_;
+        instance_.deformedTangents = nullptr;
+        if (!a.tangents.empty())
+            between(a.tangents, b.tangents, deformedTangents_), instance_.deformedTangents = deformedTangents_;
+    }
+    take(instance_.restPositions, t, restPositions_);
+    take(instance_.restNormals, t, restNormals_);
+    take(instance_.tangents, t, tangents_);
+    take(instance_.colours, t, colours_);
+    take(instance_.uv[0], t, uv_[0]);
+    take(instance_.uv[1], t, uv_[1]);
+}
+
+}  // namespace lumi
