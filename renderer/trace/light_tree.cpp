@@ -16,6 +16,10 @@ constexpr int kWidth = LightTreeNode::kWidth;
 constexpr int kBins = 12;
 /// Ranges of fewer lights are built by one thread.
 constexpr size_t kAlone = 4096;
+/// Lights that are taken as one from afar: at most so many, from so many of their group's radii on, if their directions
+/// lie within this cone.
+constexpr uint32_t kMostInGroup = 256;
+constexpr float kFarRadii = 6, kGroupSpread = 0.8f;
 
 /// Solid angle that the lights shine into, weighted by the cosine [Conty Estevez & Kulla 2018, equation 1].
 float orientationMeasure(const LightBounds& b) {
@@ -81,6 +85,8 @@ public:
                 build(child, nodes);
         }
     }
+
+    std::vector<uint32_t> takeOrder() { return std::move(order_); }
 
     Range whole() const {
         Range range{0, static_cast<uint32_t>(order_.size()), {}};
@@ -282,20 +288,50 @@ void LightTree::build(std::span<const LightBounds> bounds) {
     Builder builder(lights);
     builder.build(builder.whole(), nodes_);
     nodes_.shrink_to_fit();
+    order_ = builder.takeOrder();
+    placeLights(lights);
+}
+
+void LightTree::placeLights(std::span<const LightBounds> lights) {
+    const auto count = static_cast<uint32_t>(lights.size());
+    ranks_.resize(count);
+    intensityBefore_.assign(count + 1, 0);
+    for (uint32_t rank = 0; rank < count; ++rank) {
+        ranks_[order_[rank]] = rank;
+        intensityBefore_[rank + 1] = intensityBefore_[rank] + double(lights[order_[rank]].intensity);
+    }
     parents_.assign(nodes_.size(), ~0u);
-    places_.assign(bounds.size(), ~0u);
-    for (uint32_t n = 0; n < nodes_.size(); ++n)
+    places_.assign(count, ~0u);
+    groups_.assign(nodes_.size() * kWidth, {});
+    // Children stand after their parents: backwards, every node knows its own range.
+    std::vector<LightTreeGroup> ranges(nodes_.size(), {count, 0});
+    for (auto n = static_cast<uint32_t>(nodes_.size()); n-- > 0;)
         for (uint32_t c = 0; c < kWidth; ++c) {
-            const uint32_t child = nodes_[n].child[c], place = n * kWidth + c;
-            if (!(child & LightTreeNode::kLight))
+            const LightTreeNode& node = nodes_[n];
+            const uint32_t child = node.child[c], place = n * kWidth + c;
+            LightTreeGroup group;
+            if (child & LightTreeNode::kLight) {
+                if (!(node.intensity[c] > 0)) continue;
+                const uint32_t light = child & ~LightTreeNode::kLight;
+                places_[light] = place;
+                group.begin = ranks_[light], group.end = group.begin + 1;
+            } else {
                 parents_[child] = place;
-            else if (nodes_[n].intensity[c] > 0)
-                places_[child & ~LightTreeNode::kLight] = place;
+                group = ranges[child];
+                const bool alike = node.cosSpread[c] >= kGroupSpread && node.cosReach[c] <= 0;
+                if (alike && group.end > group.begin && group.end - group.begin <= kMostInGroup)
+                    group.far2 = kFarRadii * kFarRadii * node.radius[c] * node.radius[c];
+            }
+            groups_[place] = group;
+            ranges[n].begin = std::min(ranges[n].begin, group.begin);
+            ranges[n].end = std::max(ranges[n].end, group.end);
         }
 }
 
 size_t LightTree::byteCount() const {
-    return nodes_.capacity() * sizeof(LightTreeNode) + (parents_.capacity() + places_.capacity()) * sizeof(uint32_t);
+    return nodes_.capacity() * sizeof(LightTreeNode) + groups_.capacity() * sizeof(LightTreeGroup) +
+           intensityBefore_.capacity() * sizeof(double) +
+           (parents_.capacity() + places_.capacity() + order_.capacity() + ranks_.capacity()) * sizeof(uint32_t);
 }
 
 const LightTreeKernels& lightTreeKernels() {

@@ -76,11 +76,33 @@ inline int columnOf(const float* weights, float& x) {
     return chosen;
 }
 
-void pick(const LightTreeNode* nodes, const LightTreePoint& point, float elsewhere, float u, float v,
+/// Are the lights below that child far enough to be as one?
+inline bool isFar(const LightTreeNode& node, int column, const LightTreeGroup& group, const LightTreePoint& p) {
+    const float dx = p.x - node.x[column], dy = p.y - node.y[column], dz = p.z - node.z[column];
+    return dx * dx + dy * dy + dz * dz > group.far2;
+}
+
+/// Draws one of a group by intensity; `chance` is its share.
+inline uint32_t drawFrom(const LightTreeView& tree, const LightTreeGroup& group, float& u, float& chance) {
+    const double* before = tree.intensityBefore;
+    const double first = before[group.begin], whole = before[group.end] - first, x = first + double(u) * whole;
+    uint32_t low = group.begin, high = group.end;  // before[low] <= x < before[high]
+    while (high - low > 1) {
+        const uint32_t middle = low + (high - low) / 2;
+        (before[middle] <= x ? low : high) = middle;
+    }
+    const double own = before[low + 1] - before[low];
+    chance = static_cast<float>(own / whole);
+    const float rest = own > 0 ? static_cast<float>((x - before[low]) / own) : 0.0f;
+    u = rest < 0x1.fffffep-1f ? rest : 0x1.fffffep-1f;
+    return tree.order[low];
+}
+
+void pick(const LightTreeView& tree, const LightTreePoint& point, float elsewhere, float u, float v,
           LightTreeChoice& out) {
     out = LightTreeChoice();
     alignas(64) float weights[kWidth];
-    importance(nodes[0], point, weights);
+    importance(tree.nodes[0], point, weights);
     float sum = sumOf(weights);
     const float share = shareOf(sum, elsewhere);
     if (u >= share) {
@@ -93,7 +115,8 @@ void pick(const LightTreeNode* nodes, const LightTreePoint& point, float elsewhe
     u /= share;
     float probability = share, sinceFresh = share;
     bool fresh = true;  // the second number is unused
-    for (const LightTreeNode* node = nodes;;) {
+    for (uint32_t at = 0;;) {
+        const LightTreeNode& node = tree.nodes[at];
         if (!(sum > 0)) return;
         if (fresh && sinceFresh < kDigits) {
             u = v;
@@ -105,36 +128,56 @@ void pick(const LightTreeNode* nodes, const LightTreePoint& point, float elsewhe
         const float chance = weights[column] / sum;
         probability *= chance;
         sinceFresh *= chance;
-        const uint32_t child = node->child[column];
+        const uint32_t child = node.child[column];
         if (child & LightTreeNode::kLight) {
             out.light = child & ~LightTreeNode::kLight;
-            out.probability = probability;
-            out.u = u;
-            return;
+            break;
         }
-        node = nodes + child;
-        importance(*node, point, weights);
+        const LightTreeGroup& group = tree.groups[at * kWidth + static_cast<uint32_t>(column)];
+        if (isFar(node, column, group, point)) {
+            if (fresh && sinceFresh < 4 * kDigits) u = v;
+            float inGroup = 1;
+            out.light = drawFrom(tree, group, u, inGroup);
+            probability *= inGroup;
+            break;
+        }
+        at = child;
+        importance(tree.nodes[at], point, weights);
         sum = sumOf(weights);
     }
+    out.probability = probability;
+    out.u = u;
 }
 
-float probability(const LightTreeNode* nodes, const uint32_t* parents, const LightTreePoint& point, float elsewhere,
-                  uint32_t place) {
+float probability(const LightTreeView& tree, const LightTreePoint& point, float elsewhere, uint32_t place,
+                  uint32_t rank) {
+    // The way from the root.
+    constexpr int kDeepest = 64;
+    uint32_t way[kDeepest];
+    int length = 0;
+    for (uint32_t at = place; at != ~0u && length < kDeepest; at = tree.parents[at / kWidth]) way[length++] = at;
     float product = 1;
-    for (uint32_t at = place; at != ~0u; at = parents[at / kWidth]) {
+    for (int i = length - 1; i >= 0; --i) {
+        const LightTreeNode& node = tree.nodes[way[i] / kWidth];
+        const int column = static_cast<int>(way[i] % kWidth);
         alignas(64) float weights[kWidth];
-        importance(nodes[at / kWidth], point, weights);
-        const float sum = sumOf(weights), weight = weights[at % kWidth];
-        if (!(weight > 0)) return 0;
-        product *= weight / sum;
-        if (at < kWidth) product *= shareOf(sum, elsewhere);
+        importance(node, point, weights);
+        const float sum = sumOf(weights);
+        if (!(weights[column] > 0)) return 0;
+        if (i == length - 1) product *= shareOf(sum, elsewhere);
+        product *= weights[column] / sum;
+        if (i == 0) break;
+        const LightTreeGroup& group = tree.groups[way[i]];
+        if (!isFar(node, column, group, point)) continue;
+        const double* before = tree.intensityBefore;
+        return product * static_cast<float>((before[rank + 1] - before[rank]) / (before[group.end] - before[group.begin]));
     }
     return product;
 }
 
-float share(const LightTreeNode* nodes, const LightTreePoint& point, float elsewhere) {
+float share(const LightTreeView& tree, const LightTreePoint& point, float elsewhere) {
     alignas(64) float weights[kWidth];
-    importance(nodes[0], point, weights);
+    importance(tree.nodes[0], point, weights);
     return shareOf(sumOf(weights), elsewhere);
 }
 

@@ -17,6 +17,21 @@ struct alignas(64) LightTreeNode {
     uint32_t child[kWidth];   ///< index of a node, or of a light with kLight
 };
 
+/// The lights below a child that is a node: seen from far enough they are as one, and one of them is drawn by intensity.
+struct LightTreeGroup {
+    uint32_t begin = 0, end = 0;  ///< in the order of the tree
+    float far2 = __builtin_huge_valf();  ///< squared distance from their centre beyond which that holds
+};
+
+/// A tree as the kernels read it.
+struct LightTreeView {
+    const LightTreeNode* nodes = nullptr;       ///< the root first
+    const uint32_t* parents = nullptr;          ///< place of each node in its parent, ~0 for the root
+    const LightTreeGroup* groups = nullptr;     ///< of each place
+    const uint32_t* order = nullptr;            ///< lights so that every subtree's are neighbours
+    const double* intensityBefore = nullptr;    ///< running sums over the order, from 0
+};
+
 /// What receives light: a point, and which way it faces.
 struct LightTreePoint {
     float x = 0, y = 0, z = 0;
@@ -35,15 +50,15 @@ struct LightTreeChoice {
 /// is about the irradiance it causes (W/m^2, nothing blocked) [Conty Estevez & Kulla 2018, "Importance Sampling of Many
 /// Lights with Adaptive Tree Splitting", section 5.3]. `elsewhere` is the same for what is not in the tree; each of the two
 /// keeps a tenth of the choice, since neither knows what blocks it.
-/// Nodes are in one array, the root first. A light's place is node * kWidth + column.
+/// A place is node * kWidth + column.
 struct LightTreeKernels {
-    void (*pick)(const LightTreeNode* nodes, const LightTreePoint& point, float elsewhere, float u, float v,
+    void (*pick)(const LightTreeView& tree, const LightTreePoint& point, float elsewhere, float u, float v,
                  LightTreeChoice& out);
-    /// Probability of the light at `place`; `parents` holds the place of each node, ~0 for the root.
-    float (*probability)(const LightTreeNode* nodes, const uint32_t* parents, const LightTreePoint& point,
-                         float elsewhere, uint32_t place);
+    /// Probability of the light at `place`, the `rank`-th in the order.
+    float (*probability)(const LightTreeView& tree, const LightTreePoint& point, float elsewhere, uint32_t place,
+                         uint32_t rank);
     /// Probability that the choice falls on the tree at all.
-    float (*share)(const LightTreeNode* nodes, const LightTreePoint& point, float elsewhere);
+    float (*share)(const LightTreeView& tree, const LightTreePoint& point, float elsewhere);
 };
 
 const LightTreeKernels& lightTreeKernels();

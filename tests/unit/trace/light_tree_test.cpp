@@ -121,6 +121,51 @@ TEST(LightTree, DrawsAsOftenAsItSays) {
         }
 }
 
+/// A lit ceiling of small facets that face down, unequally bright, some of them dark.
+std::vector<LightBounds> panel(uint32_t side) {
+    std::vector<LightBounds> lights(side * side);
+    for (uint32_t i = 0; i < lights.size(); ++i) {
+        const Vec3 at(static_cast<float>(i % side) * 0.1f, 3, static_cast<float>(i / side) * 0.1f);
+        lights[i].box = {at - Vec3(0.05f, 0, 0.05f), at + Vec3(0.05f, 0, 0.05f)};
+        lights[i].axis = Vec3(0, -1, 0);
+        lights[i].intensity = i % 7 == 3 ? 0.0f : 0.2f + number(61, i);
+    }
+    return lights;
+}
+
+TEST(LightTree, FarGroupsAreDrawnByIntensityAndAsTheySay) {
+    const std::vector<LightBounds> lights = panel(24);
+    LightTree tree;
+    tree.build(lights);
+    for (const Vec3& p : {Vec3(1, 2.8f, 1), Vec3(0.5f, 1, 2), Vec3(-8, -20, 3)}) {
+        const LightTreePoint point = pointAt(p, Vec3(0, 1, 0), 1);
+        const int count = 300000;
+        std::vector<double> observed(lights.size(), 0), expected(lights.size());
+        for (uint32_t k = 0; k < count; ++k) {
+            const LightTreeChoice choice = tree.pick(point, 0, {number(71, k), number(72, k)});
+            ASSERT_LT(choice.light, lights.size());
+            ++observed[choice.light];
+            const float told = tree.probability(point, 0, choice.light);
+            ASSERT_NEAR(choice.probability, told, 1e-4f * told);
+        }
+        double sum = 0;
+        for (uint32_t i = 0; i < lights.size(); ++i) {
+            const float probability = tree.probability(point, 0, i);
+            sum += probability;
+            expected[i] = count * double(probability);
+            EXPECT_EQ(probability > 0, lights[i].intensity > 0);
+        }
+        EXPECT_NEAR(sum, 1, 1e-4);
+        EXPECT_GT(chiSquareTest(observed, expected), 1e-3) << p.y;
+    }
+    // From far below, all are as one.
+    const LightTreePoint far = pointAt(Vec3(1, -500, 1), Vec3(0, 1, 0), 1);
+    double total = 0;
+    for (const LightBounds& light : lights) total += light.intensity;
+    for (uint32_t i = 0; i < lights.size(); i += 5)
+        EXPECT_NEAR(tree.probability(far, 0, i), lights[i].intensity / total, 1e-3 * lights[i].intensity / total + 1e-9);
+}
+
 TEST(LightTree, ComesCloserToIrradianceThanIntensityAlone) {
     // The second moment of irradiance / probability over draws, against choosing by intensity; a light nearer than its
     // group is large stands out more than a bound of the group can tell, so nearness is limited.
