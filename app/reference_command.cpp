@@ -116,7 +116,7 @@ private:
 std::shared_ptr<const Signals> traceLayers(const ReferenceSpec& spec, const Document& before, const SignalSet& wanted,
                                            uint64_t samples, std::stop_token stop) {
     Tracer tracer;
-    tracer.bind(poseScene(spec.scene, {spec.time, spec.time, before.time()}));
+    tracer.bind(poseScene(spec.scene, {spec.time, spec.time + spec.openSeconds, before.time()}));
     FrameSampling sampling;
     sampling.extent = spec.camera.extent;
     sampling.camera = spec.camera;
@@ -125,6 +125,9 @@ std::shared_ptr<const Signals> traceLayers(const ReferenceSpec& spec, const Docu
     sampling.seed = spec.seed;
     sampling.jitter = spec.jitter;
     sampling.path = spec.path;
+    sampling.shutterOpen = spec.camera.shutter > 0;
+    sampling.cameraTrack = spec.cameraTrack;
+    sampling.previousCameraTrack = before.cameraTrack();
     sampling.wanted = wanted | SignalSet{Signal::Depth};
     auto signals = std::make_shared<Signals>();
     if (!tracer.sample(sampling, *signals, stop)) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});

@@ -6,7 +6,7 @@ namespace lumi {
 
 bool BlockTracer::sample(SampleRange range, const SignalSet& wanted, Signals& signals, std::stop_token stop) {
     if (!bound_) {
-        tracer_.bind(poseScene(spec_.scene, {spec_.time, spec_.time, spec_.time}));
+        tracer_.bind(poseScene(spec_.scene, {spec_.time, spec_.time + spec_.openSeconds, spec_.time}));
         bound_ = true;
     }
     FrameSampling sampling;
@@ -17,6 +17,8 @@ bool BlockTracer::sample(SampleRange range, const SignalSet& wanted, Signals& si
     sampling.seed = spec_.seed;
     sampling.jitter = spec_.jitter;
     sampling.path = spec_.path;
+    sampling.shutterOpen = spec_.camera.shutter > 0;
+    sampling.cameraTrack = sampling.previousCameraTrack = spec_.cameraTrack;
     sampling.wanted = wanted;
     return tracer_.sample(sampling, signals, stop);
 }

@@ -20,7 +20,9 @@ struct ReferenceSpec {
     std::shared_ptr<const Scene> scene;
     std::string sceneKey;  ///< tells scenes apart: content digest, and edits to it as text
     float time = 0;        ///< seconds
+    float openSeconds = 0; ///< that the shutter is open from then on
     CameraPose camera;
+    CameraTrack cameraTrack;  ///< over the open shutter; empty: the camera stands still
     PathSettings path;
     uint32_t seed = 0;
     Jitter jitter = Jitter::PerPixel;  ///< not Auto

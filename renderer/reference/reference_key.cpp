@@ -29,7 +29,15 @@ json cameraOf(const CameraPose& camera) {
             {"projection", static_cast<int>(camera.projection)},
             {"half-height", camera.halfHeight},
             {"aperture", camera.aperture},
-            {"focus", camera.focus}};
+            {"focus", camera.focus},
+            {"blades", camera.blades},
+            {"blade-rotation", camera.bladeRotation}};
+}
+
+json trackOf(const CameraTrack& track) {
+    json poses = json::array();
+    for (const CameraPose& camera : track) poses.push_back(cameraOf(camera));
+    return poses;
 }
 
 json pathOf(PathSettings path) {
@@ -50,7 +58,9 @@ std::string referenceKeyText(const ReferenceSpec& spec) {
     const json scene = json::parse(spec.sceneKey, nullptr, false);
     return json{{"scene", scene.is_discarded() ? json(spec.sceneKey) : scene},
                 {"time", spec.time},
+                {"open-seconds", spec.openSeconds},
                 {"camera", cameraOf(spec.camera)},
+                {"camera-track", trackOf(spec.cameraTrack)},
                 {"path", pathOf(spec.path)},
                 {"seed", spec.seed},
                 {"jitter", static_cast<int>(spec.jitter)},

@@ -28,6 +28,8 @@ ReferenceSpec referenceSpec(const Document& document) {
                                    {"edits", edits}}
                         .dump();
     spec.time = document.time();
+    spec.openSeconds = document.camera().shutter / document.render().fps;
+    spec.cameraTrack = document.cameraTrack();
     spec.camera = poseCamera(document.camera(), {document.render().width, document.render().height});
     spec.path = document.path();
     spec.seed = static_cast<uint32_t>(document.render().seed);

@@ -272,7 +272,7 @@ TEST(PathSettings, DescribesEveryMember) {
     PathSettings settings;
     const auto describe = [&](ParameterVisitor& v) { settings.describe(v); };
     const auto list = listParameters(describe);
-    EXPECT_EQ(list.size(), 14u);
+    EXPECT_EQ(list.size(), 15u);
     setParameter(describe, "path.strategy", std::string("bsdf"));
     setParameter(describe, "path.max-depth", 3);
     setParameter(describe, "sampler.kind", std::string("halton"));
