@@ -145,8 +145,8 @@ private:
     }
 
     void pathtracer(const std::string& name, const std::string& sceneName) {
-        const auto result = sceneName.empty() ? comparePathtracerOnCornell(log_, options_.stop)
-                                              : comparePathtracer(opened(sceneName).scene(), log_, options_.stop);
+        const auto result = sceneName.empty() ? comparePathtracerOnCornell(options_.stop)
+                                              : comparePathtracer(opened(sceneName).scene(), options_.stop);
         if (!result) return log_.warning(name + ": Embree's pathtracer gave no result");
         output_({name, result->ownMrays, "Mray/s", result->times.median(), result->times.spread(), result->theirMrays});
     }

@@ -23,8 +23,9 @@ struct View {
 };
 
 /// The file as `pathtracer` sees it: lit by the one light, seen by the one camera.
-std::shared_ptr<const Scene> sceneOf(const fs::path& file, const View& view, MessageLog& log, std::stop_token stop) {
-    Scene scene = *loadBenchScene(file, log, std::move(stop));
+std::shared_ptr<const Scene> sceneOf(const fs::path& file, const View& view, std::stop_token stop) {
+    MessageLog unread;  // that it has no light of its own, which it gets below
+    Scene scene = *loadBenchScene(file, unread, std::move(stop));
     scene.environment = {};
     scene.cameras.assign(1, {});
     scene.cameras[0].camera = view.camera;
@@ -65,9 +66,8 @@ double reportedMrays(const std::string& output) {
     return at == std::string::npos ? 0 : std::strtod(output.c_str() + at + key.size(), nullptr);
 }
 
-std::optional<PathtracerComparison> compare(const fs::path& file, const View& view, MessageLog& log,
-                                            const std::stop_token& stop) {
-    BenchScene scene(sceneOf(file, view, log, stop), view.extent);
+std::optional<PathtracerComparison> compare(const fs::path& file, const View& view, const std::stop_token& stop) {
+    BenchScene scene(sceneOf(file, view, stop), view.extent);
     scene.path() = {};
     scene.path().maxDepth = scene.path().maxDiffuseDepth = scene.path().maxSpecularDepth = kPathLength;
     scene.path().roulette = false;
@@ -97,16 +97,16 @@ bool hasPathtracer() {
     return fs::exists(kProgram, ignored) && fs::exists(kCornell, ignored);
 }
 
-std::optional<PathtracerComparison> comparePathtracerOnCornell(MessageLog& log, std::stop_token stop) {
+std::optional<PathtracerComparison> comparePathtracerOnCornell(std::stop_token stop) {
     // The view and light of the model's own .ecs file.
     View view;
     view.camera.eye = {278, 273, -800}, view.camera.target = {278, 273, 0}, view.camera.fovYDeg = 37;
     view.light = {213, 300, 227}, view.intensity = Vec3(100000);
     view.extent = {512, 512};
-    return compare(kCornell, view, log, stop);
+    return compare(kCornell, view, stop);
 }
 
-std::optional<PathtracerComparison> comparePathtracer(const Scene& scene, MessageLog& log, std::stop_token stop) {
+std::optional<PathtracerComparison> comparePathtracer(const Scene& scene, std::stop_token stop) {
     const ScratchFolder folder;
     const fs::path file = folder.path() / "scene.obj";
     exportObj(scene, file);
@@ -116,7 +116,7 @@ std::optional<PathtracerComparison> comparePathtracer(const Scene& scene, Messag
     view.light = bounds.centre();
     view.intensity = Vec3(sqr(bounds.radius()));
     view.extent = kBenchExtent;
-    return compare(file, view, log, stop);
+    return compare(file, view, stop);
 }
 
 }  // namespace lumi

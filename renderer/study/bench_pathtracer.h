@@ -1,7 +1,6 @@
 #pragma once
 #include <optional>
 
-#include "base/messages.h"
 #include "scene/scene.h"
 #include "study/bench_timing.h"
 
@@ -18,10 +17,10 @@ struct PathtracerComparison {
 bool hasPathtracer();
 
 /// On its Cornell box at 512x512; nothing if it gave no result.
-std::optional<PathtracerComparison> comparePathtracerOnCornell(MessageLog& log, std::stop_token stop);
+std::optional<PathtracerComparison> comparePathtracerOnCornell(std::stop_token stop);
 
 /// On the triangles of `scene`, written as an OBJ with colours but no textures, from the scene's first camera at 640x360
 /// under a light in the middle of its bounds.
-std::optional<PathtracerComparison> comparePathtracer(const Scene& scene, MessageLog& log, std::stop_token stop);
+std::optional<PathtracerComparison> comparePathtracer(const Scene& scene, std::stop_token stop);
 
 }  // namespace lumi
