@@ -105,8 +105,8 @@ std::string viewFooter() {
            "With --frames there is one PNG of each frame, named by its number. The commands of a script, one a line:\n"
            "  size W H  scale N  mouse X Y  hover NAME  press|release BUTTON  wheel N  click|double-click NAME\n"
            "  drag NAME DX DY  key CHORD  hold|lift KEY  text WORDS  drop PATH  set ID VALUE  pause N\n"
-           "  wait-load  wait-shown  wait-frame N  wait-frames N  wait-spp N  wait-signals  wait-message TEXT\n"
-           "  shot NAME  dump-ui NAME";
+           "  wait-load  wait-shown  wait-frame N  wait-frames N  wait-spp N  wait-signals  wait-metrics\n"
+           "  wait-message TEXT  shot NAME  dump-ui NAME";
 }
 
 std::string compareFooter() {

@@ -188,6 +188,12 @@ void ViewDriver::waits(const ScriptLine& line) {
         wait(line, [&] { return state.snapshot && !state.snapshot->preview && state.snapshot->frame == wanted; });
     } else if (line.command == "wait-signals") {
         wait(line, [&] { return session_.signalCheck() && !session_.checkingSignals(); });
+    } else if (line.command == "wait-metrics") {
+        wait(line, [&] {
+            const auto measured = state.metrics.latest();
+            return measured && state.snapshot && measured->serial == state.snapshot->serial && measured->problem.empty() &&
+                   (state.errorMap.empty() || (!measured->panes.empty() && measured->panes[0].map));
+        });
     } else if (line.command == "wait-spp") {
         const auto samples = static_cast<uint64_t>(number(line, 0));
         // What does not accumulate has as many samples as its frames.

@@ -17,6 +17,7 @@ namespace lumi {
 ///     wait-load                until the scene shows its first frame  wait-frames N      N more frames of the engine
 ///     wait-spp N               until N samples a pixel                wait-message TEXT  until a message holds it
 ///     wait-frame N             until frame N is shown                wait-signals       until the signals are checked
+///     wait-metrics             until the picture is measured against a reference
 ///     wait-shown               until the picture shows every change
 ///     shot NAME                NAME.png                               dump-ui NAME       NAME.json: where items are
 struct ScriptLine {

@@ -11,8 +11,33 @@ void AppState::beginFrame() {
     activePane = std::min(activePane, paneCount() - 1);
     const auto latest = session.snapshot();
     if (latest && (!snapshot || latest->serial != snapshot->serial)) snapshot = latest;
+    metrics.offer(snapshot);
+    if (resumeAfterReference && !metrics.reference().working) {
+        resumeAfterReference = false;
+        session.setRendering(true);
+    }
     if (snapshot && pinned && (pinned->x >= snapshot->extent.width || pinned->y >= snapshot->extent.height))
         pinned.reset();
+}
+
+bool AppState::showsReference() const {
+    return showReference && snapshot && metrics.reference().picture && metrics.fits(*snapshot);
+}
+
+std::shared_ptr<const PaneMeasurement> AppState::shownMap(int index) const {
+    if (errorMap.empty() || !snapshot || snapshot->preview || showsReference()) return nullptr;
+    const auto measured = metrics.latest();
+    if (!measured || static_cast<size_t>(index) >= measured->panes.size()) return nullptr;
+    const PaneMeasurement& pane = measured->panes[static_cast<size_t>(index)];
+    if (!pane.map || pane.map->extent != snapshot->extent || pane.module != module(index)) return nullptr;
+    return {measured, &pane};  // held with what it is a part of
+}
+
+std::shared_ptr<const Image8> AppState::picture(int index) const {
+    if (showsReference()) return metrics.reference().picture;
+    if (const auto measured = shownMap(index)) return measured->map;
+    const PaneSnapshot* shown = pane(index);
+    return shown ? shown->pixels : nullptr;
 }
 
 void AppState::setLayout(Layout layout) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "session/live_metrics.h"
 #include "session/session.h"
 #include "ui/document_mirror.h"
 #include "ui/timing.h"
@@ -13,11 +14,11 @@
 
 namespace lumi {
 
-enum class PanelTab { View, Render, Scene, Profile };
+enum class PanelTab { View, Render, Scene, Measure, Profile };
 
 /// What the window shows beside the document: never part of an image, so neither undone nor saved with it.
 struct AppState {
-    AppState(Session& session_, MessageLog& log_) : session(session_), log(log_) {}
+    AppState(Session& session_, MessageLog& log_) : session(session_), log(log_), metrics(log_) {}
 
     Session& session;
     MessageLog& log;
@@ -39,6 +40,12 @@ struct AppState {
          bufferPickerWanted = false, modulePickerWanted = false;
     std::string parameterSearch;
     bool checkScenes = true;  ///< the signals of each scene are checked when it opens
+
+    LiveMetrics metrics;
+    int referenceTarget = 1;      ///< which of the numbers of samples that the panel offers
+    std::string referenceFile;    ///< as typed
+    bool allMetrics = false, showReference = false, resumeAfterReference = false;
+    std::string errorMap;         ///< metric whose map stands in the pictures' place; empty: none
 
     using Bookmarks = std::array<std::optional<Camera>, 9>;
     std::map<std::string, Bookmarks> bookmarksByScene;  ///< by the scene's path
@@ -64,6 +71,12 @@ struct AppState {
     /// The picture of a pane before display conversion; null if it is an id buffer or not there.
     const Image* bufferImage(int pane) const;
     const std::vector<BufferEntry>& buffers(int pane);
+    /// What a pane shows: its picture, its error map or the reference; null before there is one.
+    std::shared_ptr<const Image8> picture(int pane) const;
+    /// The error map that a pane shows; null if it shows something else.
+    std::shared_ptr<const PaneMeasurement> shownMap(int pane) const;
+    bool showsReference() const;
+    float sceneExposureEv() const { return document.present() ? document.document().loadedScene()->render.exposureEv : 0; }
 
     /// Changes the document; what the session refuses is a message. endEdit() closes the step of undo.
     void set(const std::string& id, const ParameterValue& value);

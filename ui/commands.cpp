@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "reconstruct/catalog.h"
+#include "ui/panels/panels.h"
 
 namespace lumi {
 
@@ -132,6 +133,33 @@ void runPictureCommand(AppState& state, UiCommand command, int index) {
     }
 }
 
+void makeReference(AppState& state) {
+    state.metrics.makeReference(state.document.document(), referenceSamples(state));
+    // Two tracers at once would be slower than one after the other.
+    state.resumeAfterReference = state.resumeAfterReference || state.session.rendering();
+    state.session.setRendering(false);
+    state.tab = PanelTab::Measure;
+}
+
+void runMeasureCommand(AppState& state, UiCommand command) {
+    const bool present = state.metrics.reference().present;
+    switch (command) {
+        case UiCommand::MakeReference:
+            makeReference(state);
+            break;
+        case UiCommand::ShowReference:
+            state.showReference = present && !state.showReference;
+            break;
+        case UiCommand::ToggleErrorMap:
+            state.errorMap = state.errorMap.empty() && present ? "flip" : "";
+            break;
+        default:
+            return;
+    }
+    if (!present && command != UiCommand::MakeReference)
+        state.log.info("There is no reference yet; " + shortcutText(UiCommand::MakeReference) + " makes one.");
+}
+
 void runTimeCommand(AppState& state, UiCommand command) {
     Session& session = state.session;
     switch (command) {
@@ -247,6 +275,7 @@ void runCommand(AppState& state, UiCommand command, int index) {
     try {
         runPictureCommand(state, command, index);
         runTimeCommand(state, command);
+        runMeasureCommand(state, command);
         runWindowCommand(state, command, index);
     } catch (const Error& error) {
         state.log.error(error.what());

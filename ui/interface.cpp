@@ -110,6 +110,8 @@ void Interface::build(Extent2 target, float elapsedSeconds) {
     messagesSeen_ = state_.log.messages().size();
     revisionSeen_ = state_.session.revision();
     checkSeen_ = state_.session.signalCheck();
+    measuredSeen_ = state_.metrics.latest();
+    state_.metrics.choose(wantedMetrics(state_), state_.errorMap);
     const FrameInput input = input_.applyFrame();
     io.DisplaySize = ImVec2(static_cast<float>(target.width), static_cast<float>(target.height));
     io.DeltaTime = std::max(elapsedSeconds, 1e-4f);
@@ -128,7 +130,7 @@ void Interface::draw(Extent2 target) {
     gl_.ClearColor(background.x, background.y, background.z, 1);
     gl_.Clear(GL_COLOR_BUFFER_BIT);
     for (int pane = 0; pane < ImagePainter::kPictures; ++pane)
-        if (const PaneSnapshot* shown = state_.pane(pane)) painter_.setPicture(pane, shown->pixels);
+        painter_.setPicture(pane, state_.picture(pane));
     painter_.draw(pictures_, target, {background.x, background.y, background.z, 1});
     renderer_.draw(*ImGui::GetDrawData(), target);
 }
@@ -139,14 +141,14 @@ bool Interface::busy() const {
         return std::any_of(std::begin(states), std::end(states), [](bool down) { return down; });
     };
     return framesToSettle_ > 0 || held(io.MouseDown) || held(io.KeysDown) || state_.session.loadStatus().loading ||
-           state_.session.checkingSignals() || state_.session.steppingBack();
+           state_.session.checkingSignals() || state_.session.steppingBack() || state_.metrics.reference().working;
 }
 
 bool Interface::wantsFrame() const {
     if (!input_.empty() || busy()) return true;
     const auto latest = state_.session.snapshot();
     if (latest && (!state_.snapshot || latest->serial != state_.snapshot->serial)) return true;
-    if (state_.session.signalCheck() != checkSeen_) return true;
+    if (state_.session.signalCheck() != checkSeen_ || state_.metrics.latest() != measuredSeen_) return true;
     return state_.log.messages().size() != messagesSeen_ || state_.session.revision() != revisionSeen_;
 }
 

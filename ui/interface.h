@@ -62,6 +62,7 @@ private:
     size_t messagesSeen_ = 0;
     uint64_t revisionSeen_ = 0;
     std::shared_ptr<const SignalCheck> checkSeen_;
+    std::shared_ptr<const LiveMeasurement> measuredSeen_;
 };
 
 }  // namespace lumi

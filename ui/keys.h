@@ -24,6 +24,7 @@ enum class Key : int {
     D = 'D',
     E = 'E',
     F = 'F',
+    G = 'G',
     H = 'H',
     I = 'I',
     K = 'K',

@@ -60,6 +60,9 @@ void drawPaneLabel(AppState& state, int pane, const ImRect& rect, bool alignRigh
     std::string words = shown ? details(*shown) : std::string();
     if (shown && shown->info.nonFinite > 0) words += fmt::format(" · {} pixels not finite", shown->info.nonFinite);
 
+    if (state.showsReference()) words = "reference, " + state.metrics.reference().name;
+    else if (state.shownMap(pane)) words = "error: " + state.errorMap;
+
     float fixed = px(34) * 2 + px(30);
     {
         const WithFont strong(ui().fonts.strong);

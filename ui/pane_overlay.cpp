@@ -83,8 +83,8 @@ void drawPixelFrame(const AppState& state, Pixel pixel, const ImRect& rect, cons
 }
 
 /// The colour map with its ends, at the bottom right of what is visible of the pane.
-void drawColourBar(const PaneSnapshot& shown, const ImRect& visible) {
-    if (!shown.info.falseColour || shown.info.colourMap == "ids" || shown.info.colourMap == "wheel") return;
+void drawColourBar(const DisplayInfo& info, const ImRect& visible) {
+    if (!info.falseColour || info.colourMap == "ids" || info.colourMap == "wheel") return;
     const float width = std::min(px(190), visible.GetWidth() - px(40)), height = px(8);
     if (width < px(80)) return;
     const ImVec2 corner(visible.Max.x - width - px(22), visible.Max.y - px(46));
@@ -93,7 +93,7 @@ void drawColourBar(const PaneSnapshot& shown, const ImRect& visible) {
                        px(5));
     constexpr int kSteps = 48;
     const auto colour = [&](int i) {
-        const Vec3 c = colourMapValue(shown.info.colourMap, static_cast<float>(i) / kSteps);
+        const Vec3 c = colourMapValue(info.colourMap, static_cast<float>(i) / kSteps);
         return ImGui::ColorConvertFloat4ToU32(ImVec4(c.x, c.y, c.z, 1));
     };
     for (int i = 0; i < kSteps; ++i) {
@@ -103,23 +103,27 @@ void drawColourBar(const PaneSnapshot& shown, const ImRect& visible) {
                                      colour(i + 1), colour(i));
     }
     const WithFont font(ui().fonts.small);
-    const std::string low = fmt::format("{:.4g}", shown.info.low), high = fmt::format("{:.4g}", shown.info.high);
+    const std::string low = fmt::format("{:.4g}", info.low), high = fmt::format("{:.4g}", info.high);
     const float y = corner.y + height + px(4);
     list.AddText(ImVec2(corner.x, y), palette::kText, low.c_str());
     list.AddText(ImVec2(corner.x + width - ImGui::CalcTextSize(high.c_str()).x, y), palette::kText, high.c_str());
-    const float nameWidth = ImGui::CalcTextSize(shown.info.colourMap.c_str()).x;
-    list.AddText(ImVec2(corner.x + 0.5f * (width - nameWidth), y), palette::kDim, shown.info.colourMap.c_str());
+    const float nameWidth = ImGui::CalcTextSize(info.colourMap.c_str()).x;
+    list.AddText(ImVec2(corner.x + 0.5f * (width - nameWidth), y), palette::kDim, info.colourMap.c_str());
 }
 
 }  // namespace
 
 void drawPaneOverlay(AppState& state, int pane, const ImRect& rect, const ImRect& visible) {
     if (visible.GetWidth() < 1) return;
-    drawPixelValues(state, pane, rect, visible);
+    const auto map = state.shownMap(pane);
+    const bool reference = state.showsReference();
+    if (!map && !reference) drawPixelValues(state, pane, rect, visible);
     if (state.hovered && state.view.zoom() >= px(6))
         drawPixelFrame(state, *state.hovered, rect, visible, IM_COL32(255, 255, 255, 150), false);
     if (state.pinned) drawPixelFrame(state, *state.pinned, rect, visible, palette::kAccent, true);
-    if (const PaneSnapshot* shown = state.pane(pane)) drawColourBar(*shown, visible);
+    const PaneSnapshot* shown = state.pane(pane);
+    if (map) drawColourBar(map->mapInfo, visible);
+    else if (shown && !reference) drawColourBar(shown->info, visible);
 }
 
 }  // namespace lumi

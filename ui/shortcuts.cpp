@@ -34,6 +34,9 @@ constexpr std::array kShortcuts{
     Shortcut{UiCommand::Fit, plain(Key::F), 1, false, kPicture, "Fit the picture"},
     Shortcut{UiCommand::ActualSize, shift(Key::F), 1, false, kPicture, "One pixel for each pixel"},
     Shortcut{UiCommand::Loupe, plain(Key::Z), 1, false, kPicture, "Loupe under the pointer"},
+    Shortcut{UiCommand::ShowReference, plain(Key::G), 1, false, kPicture, "The reference in the picture's place"},
+    Shortcut{UiCommand::MakeReference, shift(Key::G), 1, false, kPicture, "Make a reference of what is shown"},
+    Shortcut{UiCommand::ToggleErrorMap, plain(Key::M), 1, false, kPicture, "Error map against the reference"},
 
     Shortcut{UiCommand::MoveForward, plain(Key::W), 1, true, kCamera, "forward"},
     Shortcut{UiCommand::MoveLeft, plain(Key::A), 1, true, kCamera, "left"},

@@ -21,6 +21,9 @@ enum class UiCommand {
     Fit,
     ActualSize,
     Loupe,
+    ShowReference,
+    MakeReference,
+    ToggleErrorMap,
     // Camera
     MoveForward,
     MoveBack,

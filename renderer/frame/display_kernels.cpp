@@ -73,30 +73,64 @@ inline Rgb acesCurve(Rgb c) {
     return multiply(kAcesOut, {fit(v.r), fit(v.g), fit(v.b)});
 }
 
+/// log2 for the sigmoid of AgX, without a division; absolute error below 4e-6.
+inline float agxLog2(float x) {
+    x = x > 1.17549435e-38f ? x : 1.17549435e-38f;
+    const int32_t bits = floatToBits(x);
+    // The mantissa in [sqrt(1/2), sqrt(2)): 0x3f3504f3 is sqrt(1/2).
+    const int32_t exponent = (bits - 0x3f3504f3) >> 23;
+    const float f = bitsToFloat(bits - (exponent << 23)) - 1.0f;
+    float p = -0.206858124f;  // Chebyshev interpolant of log2(1 + f) / f
+    p = p * f + 0.318407118f;
+    p = p * f - 0.366413259f;
+    p = p * f + 0.479793884f;
+    p = p * f - 0.721208468f;
+    p = p * f + 1.4427018f;
+    return p * f + static_cast<float>(exponent);
+}
+
+/// AgX up to its display gamma, which agxEncode() takes in.
 inline Rgb agxCurve(Rgb c) {
     const auto sigmoid = [](float linear) {
-        const float ev = kernelLog2(linear);
+        const float ev = agxLog2(linear);
         const float low = ev > kAgxMinEv ? ev : kAgxMinEv;
         const float within = low < kAgxMaxEv ? low : kAgxMaxEv;
         const float x = (within - kAgxMinEv) * (1 / (kAgxMaxEv - kAgxMinEv));
         const float* k = kAgxCurve;
         return (((((k[0] * x + k[1]) * x + k[2]) * x + k[3]) * x + k[4]) * x + k[5]) * x + k[6];
     };
-    const auto display = [](float x) { return kernelPow(x > 0.0f ? x : 0.0f, kAgxGamma); };
     const Rgb inset = multiply(kAgxInset, c);
-    const Rgb outset = multiply(kAgxOutset, {sigmoid(inset.r), sigmoid(inset.g), sigmoid(inset.b)});
-    return {display(outset.r), display(outset.g), display(outset.b)};
+    return multiply(kAgxOutset, {sigmoid(inset.r), sigmoid(inset.g), sigmoid(inset.b)});
 }
 
-template <class Curve>
+/// sRGB encoding of x^2.2 on [0, 1], nearly x itself: Chebyshev interpolants on both sides of where sRGB's linear toe
+/// ends, within 0.015/255.
+inline float agxEncode(float x) {
+    float low = -129.771751f;
+    low = low * x + 37.1588482f;
+    low = low * x + 5.79051212f;
+    low = low * x - 0.0116970403f;
+    low = low * x + 1.15994146e-05f;
+    float high = -0.250793326f;
+    high = high * x + 0.958308066f;
+    high = high * x - 1.50818187f;
+    high = high * x + 1.29338514f;
+    high = high * x - 0.72593278f;
+    high = high * x + 1.28257319f;
+    high = high * x - 0.0493808815f;
+    return x <= 0.0727212795f ? low : high;
+}
+
+/// `encode` takes what `curve` gives, held in [0, 1], to the screen.
+template <class Curve, class Encode>
 inline int toneRow(const float* r, const float* g, const float* b, int count, float scale, uint32_t* __restrict out,
-                   Curve curve) {
+                   Curve curve, Encode encode) {
     int bad = 0;
     for (int i = 0; i < count; ++i) {
         const Rgb c{clamped(r[i] * scale, kBrightest), clamped(g[i] * scale, kBrightest),
                     clamped(b[i] * scale, kBrightest)};
         const Rgb t = curve(c);
-        const uint32_t pixel = packed({srgb(clamped(t.r, 1)), srgb(clamped(t.g, 1)), srgb(clamped(t.b, 1))});
+        const uint32_t pixel = packed({encode(clamped(t.r, 1)), encode(clamped(t.g, 1)), encode(clamped(t.b, 1))});
         const int32_t nan = isNan(r[i]) | isNan(g[i]) | isNan(b[i]);
         const int32_t infinite = isInfinite(r[i]) | isInfinite(g[i]) | isInfinite(b[i]);
         out[i] = nan ? kMagenta : infinite ? kCyan : pixel;
@@ -106,15 +140,16 @@ inline int toneRow(const float* r, const float* g, const float* b, int count, fl
 }
 
 int tone(const float* r, const float* g, const float* b, int count, float scale, int curve, uint32_t* out) {
+    const auto toSrgb = [](float x) { return srgb(x); };
     switch (curve) {
         case 1:
-            return toneRow(r, g, b, count, scale, out, [](Rgb c) { return reinhardCurve(c); });
+            return toneRow(r, g, b, count, scale, out, [](Rgb c) { return reinhardCurve(c); }, toSrgb);
         case 2:
-            return toneRow(r, g, b, count, scale, out, [](Rgb c) { return acesCurve(c); });
+            return toneRow(r, g, b, count, scale, out, [](Rgb c) { return acesCurve(c); }, toSrgb);
         case 3:
-            return toneRow(r, g, b, count, scale, out, [](Rgb c) { return agxCurve(c); });
+            return toneRow(r, g, b, count, scale, out, [](Rgb c) { return agxCurve(c); }, [](float x) { return agxEncode(x); });
         default:
-            return toneRow(r, g, b, count, scale, out, [](Rgb c) { return clampCurve(c); });
+            return toneRow(r, g, b, count, scale, out, [](Rgb c) { return clampCurve(c); }, toSrgb);
     }
 }
 

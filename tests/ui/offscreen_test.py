@@ -12,6 +12,7 @@ import sys
 from pictures import Picture, difference
 
 PROGRAM, FOLDER = sys.argv[1], pathlib.Path(sys.argv[2])
+os.environ["XDG_CACHE_HOME"] = str(FOLDER / "cache")
 SMALL = ["--set", "render.width=320", "--set", "render.height=180", "--set", "accumulate.limit=on",
          "--set", "accumulate.max-samples=4"]
 PICTURE = (20, 160, 900, 660)  # inside the picture area at 1280x800, clear of labels and colour bars
@@ -243,7 +244,7 @@ click signals
 wait-signals
 shot good
 dump-ui good
-key Esc
+click close-signals
 dump-ui closed
 """)
     names = lambda file: {item["name"] for item in json.loads((out / file).read_text())["items"]}
@@ -252,6 +253,37 @@ dump-ui closed
     light = [i for i in json.loads((out / "good.json").read_text())["items"] if i["name"] == "signals"][0]
     r, g, b = Picture(out / "good.png").pixel(round(light["x"] + 10), round(light["y"] + light["height"] / 2))
     assert g > 150 and r < 140, (r, g, b)
+
+
+def test_metrics_against_a_reference():
+    out, report = view("measure", """
+wait-load
+wait-spp 4
+shot picture
+click tab:Measure
+click reference-samples:256
+click make-reference
+wait-metrics
+dump-ui measured
+key m
+wait-metrics
+shot map
+key m
+key g
+shot reference
+click tab:View
+key ctrl+m
+click close-messages
+dump-ui closed
+""", options=["--set", "render.width=64", "--set", "render.height=36", "--set", "accumulate.limit=on", "--set",
+              "accumulate.max-samples=4"])
+    names = lambda file: {item["name"] for item in json.loads((out / file).read_text())["items"]}
+    assert {"metric:rmse:0", "metric:ssim:0", "error-map", "clear-reference"} <= names("measured.json"), names("measured.json")
+    picture, error, reference = (Picture(out / f"{n}.png") for n in ("picture", "map", "reference"))
+    assert difference(picture, error, PICTURE) > 10, "the error map is another picture"
+    assert 1 < difference(picture, reference, PICTURE) < 60, "the reference is the same thing with less noise"
+    assert "close-messages" not in names("closed.json"), "the drawer's buttons have the mouse"
+    assert report["errors"] == [], report["errors"]
 
 
 def test_flying_changes_the_picture_and_bookmarks_bring_it_back():

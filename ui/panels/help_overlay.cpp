@@ -73,8 +73,7 @@ void drawGroup(const char* group, float width) {
 
 void drawHelp(AppState& state, const ImRect& area) {
     if (!state.helpOpen) return;
-    ImGui::SetNextWindowFocus();
-    beginFixed("help-shade", area, IM_COL32(8, 9, 10, 150), ImVec2(0, 0), ImGuiWindowFlags_NoInputs);
+    beginDrawer("help-shade", area, IM_COL32(8, 9, 10, 150), ImVec2(0, 0), ImGuiWindowFlags_NoInputs);
     endFixed();
     ImGui::SetNextWindowFocus();
     const bool twoColumns = area.GetWidth() >= px(860);

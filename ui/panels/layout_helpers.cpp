@@ -5,16 +5,25 @@
 
 namespace lumi {
 
-void beginFixed(const char* name, const ImRect& area, ImU32 colour, ImVec2 padding, ImGuiWindowFlags extra) {
+static void beginArea(const char* name, const ImRect& area, ImU32 colour, ImVec2 padding, ImGuiWindowFlags flags) {
     ImGui::SetNextWindowPos(area.Min);
     ImGui::SetNextWindowSize(area.GetSize());
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
     ImGui::PushStyleColor(ImGuiCol_WindowBg, colour);
-    ImGui::Begin(name, nullptr, kFixedWindow | extra);
+    ImGui::Begin(name, nullptr, flags);
     ImGui::PopStyleColor();
     ImGui::PopStyleVar(3);
+}
+
+void beginFixed(const char* name, const ImRect& area, ImU32 colour, ImVec2 padding, ImGuiWindowFlags extra) {
+    beginArea(name, area, colour, padding, kFixedWindow | extra);
+}
+
+void beginDrawer(const char* name, const ImRect& area, ImU32 colour, ImVec2 padding, ImGuiWindowFlags extra) {
+    ImGui::SetNextWindowFocus();
+    beginArea(name, area, colour, padding, (kFixedWindow & ~ImGuiWindowFlags_NoBringToFrontOnFocus) | extra);
 }
 
 void endFixed() {

@@ -15,6 +15,12 @@ void drawViewPanel(AppState& state);
 void drawRenderPanel(AppState& state);
 void drawScenePanel(AppState& state);
 void drawProfilePanel(AppState& state);
+/// The reference, metrics of each view against it, error maps.
+void drawMeasurePanel(AppState& state);
+/// Metrics that are computed with every frame, as the panel is set.
+std::vector<std::string> wantedMetrics(const AppState& state);
+/// Samples a pixel of the reference that the panel asks for.
+uint64_t referenceSamples(const AppState& state);
 /// Cameras of the scene and bookmarks; a part of the scene panel.
 void drawCameras(AppState& state);
 
@@ -35,8 +41,10 @@ void drawEmptyPicture(AppState& state, const ImRect& area);
 /// Window flags of parts that stay where they are put.
 constexpr ImGuiWindowFlags kFixedWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                           ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
-/// Begins a window of exactly `area`.
+/// Begins a window of exactly `area`, behind those that open over it.
 void beginFixed(const char* name, const ImRect& area, ImU32 colour, ImVec2 padding, ImGuiWindowFlags extra = 0);
+/// The same in front of what is fixed: a drawer, whose buttons have the mouse.
+void beginDrawer(const char* name, const ImRect& area, ImU32 colour, ImVec2 padding, ImGuiWindowFlags extra = 0);
 void endFixed();
 
 /// "Sponza" for /a/b/Sponza.gltf, or the scene's own title.

@@ -84,8 +84,7 @@ void drawSignals(AppState& state, const ImRect& area) {
     if (!state.signalsOpen || !state.document.present()) return;
     const float height = std::min(px(330), 0.6f * area.GetHeight());
     const ImRect box(ImVec2(area.Min.x, area.Max.y - height), area.Max);
-    ImGui::SetNextWindowFocus();
-    beginFixed("signals-drawer", box, IM_COL32(22, 23, 26, 250), ImVec2(px(14), px(10)));
+    beginDrawer("signals-drawer", box, IM_COL32(22, 23, 26, 250), ImVec2(px(14), px(10)));
     markRect("signals-drawer", box.Min, box.Max);
     heading("Signals");
     ImGui::SameLine(0, px(12));

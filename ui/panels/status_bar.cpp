@@ -91,8 +91,7 @@ void drawMessages(AppState& state, const ImRect& area) {
     if (!state.messagesOpen) return;
     const float height = std::min(px(210), 0.5f * area.GetHeight());
     const ImRect box(ImVec2(area.Min.x, area.Max.y - height), area.Max);
-    ImGui::SetNextWindowFocus();
-    beginFixed("message-drawer", box, IM_COL32(22, 23, 26, 250), ImVec2(px(14), px(10)));
+    beginDrawer("message-drawer", box, IM_COL32(22, 23, 26, 250), ImVec2(px(14), px(10)));
     heading("Messages");
     ImGui::SameLine(ImGui::GetWindowWidth() - px(112));
     if (ImGui::SmallButton("Clear")) state.log.clear();

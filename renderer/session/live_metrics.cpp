@@ -1,0 +1,278 @@
+#include "session/live_metrics.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "image/hdr.h"
+
+namespace lumi {
+namespace {
+
+constexpr size_t kMostPoints = 400;
+
+void lowerPriority() {
+    flushDenormals();
+    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 10);
+}
+
+std::shared_ptr<const Image8> shown(const Image& image, float exposureEv) {
+    auto pixels = std::make_shared<Image8>();
+    DisplaySettings settings;
+    settings.exposureEv = exposureEv;
+    convert(image, "RGB", "none", settings, *pixels);
+    return pixels;
+}
+
+}  // namespace
+
+/// A reference, and what it is one of; without a scene it came from a file.
+struct LiveMetrics::Held {
+    Image image;
+    ReferenceSpec spec;
+};
+
+struct LiveMetrics::Made {
+    std::shared_ptr<Held> held;
+    ReferenceStatus status;
+};
+
+LiveMetrics::LiveMetrics(MessageLog& log) : log_(log) {
+    thread_ = std::jthread([this](std::stop_token quit) { run(quit); });
+}
+
+LiveMetrics::~LiveMetrics() {
+    maker_.request_stop();  // and those before it have been asked to
+    thread_.request_stop();
+    wake_.notify_all();
+}
+
+/// Runs `make` aside; what it gives becomes the reference unless something else was asked for since. Never waits: a
+/// thread that is to stop is joined at the end.
+void LiveMetrics::inBackground(std::function<Made(std::stop_token)> make) {
+    uint64_t generation = 0;
+    {
+        std::lock_guard lock(mutex_);
+        generation = ++generation_;
+        status_.working = true;
+        status_.progress = {};
+    }
+    maker_.request_stop();
+    if (maker_.joinable()) retired_.push_back(std::move(maker_));
+    maker_ = std::jthread([this, generation, make = std::move(make)](std::stop_token stop) {
+        lowerPriority();
+        std::optional<Made> made;
+        try {
+            made = make(stop);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::Interrupted) log_.error(error.what());
+        } catch (const std::exception& error) {
+            log_.error(std::string("the reference could not be made: ") + error.what());
+        }
+        std::lock_guard lock(mutex_);
+        if (generation != generation_) return;
+        if (made) adopt(std::move(*made));
+        status_.working = false;
+    });
+}
+
+void LiveMetrics::loadReference(const std::filesystem::path& file, float exposureEv) {
+    inBackground([file, exposureEv](std::stop_token) {
+        Made made{std::make_shared<Held>(), {}};
+        made.held->image = loadImage(file);
+        made.status.name = file.filename().string();
+        made.status.picture = shown(made.held->image, exposureEv);
+        return made;
+    });
+}
+
+void LiveMetrics::makeReference(const Document& document, uint64_t samples) {
+    const float exposureEv = document.loadedScene()->render.exposureEv;
+    inBackground([this, spec = referenceSpec(document), samples, exposureEv](std::stop_token stop) {
+        ReferenceOptions options;
+        options.cache = defaultReferenceCache();
+        options.log = &log_;
+        options.stop = stop;
+        options.progress = [this, stop](const ReferenceProgress& progress) {
+            std::lock_guard lock(mutex_);
+            if (!stop.stop_requested()) status_.progress = progress;
+        };
+        Reference reference = lumi::makeReference(spec, {samples, 0}, options);
+        Made made{std::make_shared<Held>(), {}};
+        made.status.name = fmt::format("{} spp{}", reference.samples, reference.cached ? ", from the cache" : "");
+        made.status.samples = reference.samples;
+        made.status.error = reference.error > 0 ? reference.error : 0;
+        made.status.picture = shown(reference.image, exposureEv);
+        made.held->image = std::move(reference.image);
+        made.held->spec = spec;
+        return made;
+    });
+}
+
+/// The caller holds the lock.
+void LiveMetrics::adopt(Made made) {
+    status_ = std::move(made.status);
+    status_.present = true;
+    status_.extent = made.held->image.extent();
+    reference_ = std::move(made.held);
+    latest_ = nullptr;
+    curves_ = nullptr;
+    chosenAnew_ = true;
+    wake_.notify_all();
+}
+
+void LiveMetrics::cancelReference() {
+    maker_.request_stop();
+    std::lock_guard lock(mutex_);
+    ++generation_;
+    status_.working = false;
+}
+
+void LiveMetrics::clearReference() {
+    cancelReference();
+    std::lock_guard lock(mutex_);
+    reference_ = nullptr;
+    latest_ = nullptr;
+    curves_ = nullptr;
+    status_ = {};
+}
+
+ReferenceStatus LiveMetrics::reference() const {
+    std::lock_guard lock(mutex_);
+    return status_;
+}
+
+bool LiveMetrics::fits(const Snapshot& snapshot) const {
+    std::lock_guard lock(mutex_);
+    if (!reference_ || reference_->image.extent() != snapshot.extent) return false;
+    const ReferenceSpec& spec = reference_->spec;
+    return !spec.scene || (snapshot.scene && snapshot.scene->scene == spec.scene && snapshot.time == spec.time &&
+                           snapshot.camera == spec.camera);
+}
+
+void LiveMetrics::choose(std::vector<std::string> metrics, const std::string& map) {
+    std::lock_guard lock(mutex_);
+    if (metrics == metrics_ && map == map_) return;
+    metrics_ = std::move(metrics);
+    map_ = map;
+    chosenAnew_ = true;
+    wake_.notify_all();
+}
+
+void LiveMetrics::offer(std::shared_ptr<const Snapshot> snapshot) {
+    std::lock_guard lock(mutex_);
+    if (!snapshot || snapshot->preview || (offered_ && offered_->serial == snapshot->serial)) return;
+    offered_ = std::move(snapshot);
+    if (reference_) wake_.notify_all();
+}
+
+std::shared_ptr<const LiveMeasurement> LiveMetrics::latest() const {
+    std::lock_guard lock(mutex_);
+    return latest_;
+}
+
+std::shared_ptr<const ConvergenceCurves> LiveMetrics::curves() const {
+    std::lock_guard lock(mutex_);
+    return curves_;
+}
+
+bool LiveMetrics::hasWork() const {
+    return reference_ && offered_ && (chosenAnew_ || !latest_ || latest_->serial != offered_->serial);
+}
+
+void LiveMetrics::run(std::stop_token quit) {
+    lowerPriority();
+    while (!quit.stop_requested()) {
+        std::unique_lock lock(mutex_);
+        wake_.wait(lock, quit, [this] { return hasWork(); });
+        if (quit.stop_requested()) return;
+        const auto snapshot = offered_;
+        const auto reference = reference_;
+        const auto metrics = metrics_;
+        const std::string map = map_;
+        chosenAnew_ = false;
+        lock.unlock();
+        auto measured = std::make_shared<LiveMeasurement>();
+        if (fits(*snapshot)) *measured = measure(*snapshot, *reference, metrics, map);
+        else measured->problem = reference->image.extent() == snapshot->extent
+                                     ? "The reference is of another camera, time or scene."
+                                     : fmt::format("The reference has {} x {} pixels, the picture {} x {}.",
+                                                   reference->image.width(), reference->image.height(),
+                                                   snapshot->extent.width, snapshot->extent.height);
+        measured->serial = snapshot->serial;
+        measured->samples = snapshot->accumulatedSamples;
+        lock.lock();
+        if (reference != reference_) continue;
+        note(*measured);
+        latest_ = std::move(measured);
+    }
+}
+
+LiveMeasurement LiveMetrics::measure(const Snapshot& snapshot, const Held& reference,
+                                     const std::vector<std::string>& metrics, const std::string& map) const {
+    Timer timer;
+    LiveMeasurement result;
+    std::vector<Image> maps;
+    for (const PaneSnapshot& shownPane : snapshot.panes) {
+        PaneMeasurement& pane = result.panes.emplace_back();
+        pane.module = shownPane.module;
+        const auto image = snapshot.results.find(shownPane.module);
+        if (image == snapshot.results.end() || image->second->extent() != reference.image.extent()) continue;
+        ImagePair pair;
+        pair.image = *image->second;
+        pair.reference = reference.image;
+        pair.exposureEv = snapshot.scene->scene->render.exposureEv;
+        pair.prepare();
+        pane.nonFinitePixels = pair.nonFinitePixels;
+        for (const std::string& id : metrics) pane.values[id] = findMetric(id).measure(pair, false).value;
+        if (!map.empty()) maps.push_back(findMetric(map).measure(pair, true).map);
+    }
+    if (!map.empty() && maps.size() == result.panes.size()) showMaps(maps, findMetric(map).mapColours, result.panes);
+    result.ms = timer.elapsedMs();
+    return result;
+}
+
+/// Adds a point to each pane's curve; the caller holds the lock. Where samples go back, a curve begins again.
+void LiveMetrics::note(const LiveMeasurement& measurement) {
+    if (!measurement.problem.empty()) return;
+    auto curves = curves_ ? std::make_shared<ConvergenceCurves>(*curves_) : std::make_shared<ConvergenceCurves>();
+    curves->resize(measurement.panes.size());
+    for (size_t i = 0; i < measurement.panes.size(); ++i) {
+        std::vector<ConvergencePoint>& curve = (*curves)[i];
+        if (!curve.empty() && curve.back().samples > measurement.samples) curve.clear();
+        if (!curve.empty() && curve.back().samples == measurement.samples) curve.pop_back();
+        curve.push_back({measurement.samples, measurement.panes[i].values});
+        if (curve.size() <= kMostPoints) continue;
+        // On logarithmic axes early points say more: of the later half every second one goes.
+        std::vector<ConvergencePoint> thinned(curve.begin(), curve.begin() + kMostPoints / 2);
+        for (size_t k = kMostPoints / 2; k < curve.size(); k += 2) thinned.push_back(curve[k]);
+        curve = std::move(thinned);
+    }    curves_ = std::move(curves);
+}
+
+void showMaps(const std::vector<Image>& maps, const char* colourMap, std::vector<PaneMeasurement>& panes) {
+    const char* colours = colourMap ? colourMap : "magma";
+    DisplaySettings settings;
+    float high = 0;
+    for (const Image& map : maps) {
+        Image8 pixels;
+        if (!map.empty()) high = std::max(high, convert(map, "Y", colours, settings, pixels).high);
+    }
+    settings.autoRange = false;
+    settings.low = 0;
+    settings.high = high > 0 ? high : 1;
+    for (size_t i = 0; i < maps.size(); ++i) {
+        if (maps[i].empty()) continue;
+        auto pixels = std::make_shared<Image8>();
+        panes[i].mapInfo = convert(maps[i], "Y", colours, settings, *pixels);
+        panes[i].map = std::move(pixels);
+    }
+}
+
+}  // namespace lumi
