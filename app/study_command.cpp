@@ -26,7 +26,12 @@ std::string progressText(const StudyProgress& progress) {
     std::string bar;
     for (size_t i = 0; i < kBarWidth; ++i) bar += i < full ? "█" : "░";
     const std::string left = progress.leftS >= 0 ? formatDuration(progress.leftS) + " left" : "";
-    const std::string step = progress.step.size() > 64 ? progress.step.substr(0, 61) + "..." : progress.step;
+    constexpr size_t kWidest = 64;
+    std::string step = progress.step;
+    if (step.size() > kWidest) {
+        step.resize(kWidest - 3);
+        step += "...";
+    }
     return fmt::format("{} {:3.0f}%  {}  job {} of {}  {}", bar, 100 * progress.fraction, left,
                        std::min(progress.job + 1, progress.jobs), progress.jobs, step);
 }

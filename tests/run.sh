@@ -15,7 +15,7 @@ build() { # build PRESET TARGET...
     local preset=$1; shift
     echo "Building $preset ..."
     if ! (cmake --preset "$preset" && cmake --build --preset "$preset" -j"$jobs" "$@") >"$log" 2>&1; then
-        grep -E -A 12 'error|FAILED' "$log" | head -n 80
+        grep -E -A 12 'error: |FAILED: |CMake Error' "$log" | head -n 80
         echo "The $preset build failed; the whole log is $log"
         exit 1
     fi
