@@ -133,6 +133,18 @@ class Window:
         new = self.until("a screenshot", lambda: set(self.captures.glob("*.png")) - before)
         return new.pop()
 
+    def capture_at_rest(self, wanted=None):
+        """A capture of frame `wanted`, or of the frame that stays; names are those of what is shown when the key is struck."""
+        last = self.capture()
+
+        def rests():
+            nonlocal last
+            before, last = last, self.capture()
+            return frame_of(last) == (frame_of(before) if wanted is None else wanted)
+        if wanted is None or frame_of(last) != wanted:
+            self.until(f"frame {'that stays' if wanted is None else wanted}", rests)
+        return last
+
     def shot(self, name):
         path = FOLDER / f"{name}.png"
         subprocess.run(["import", "-window", "root", "-depth", "8", "-define", "png:color-type=2",
@@ -169,16 +181,14 @@ def walk_through_time(window):
     """Pause, step, step back, restart and play, each told by the frame numbers of screenshots; EXR."""
     window.click("layout:One view")
     window.click("pause-rendering")
-    first = window.capture()
+    first = window.capture_at_rest()
     window.key("period")
-    second = window.capture()
-    assert frame_of(second) == frame_of(first) + 1, f"{first.name}, one step, {second.name}"
+    window.capture_at_rest(frame_of(first) + 1)
     window.key("comma")
-    again = window.capture()
-    assert frame_of(again) == frame_of(first), f"{second.name}, one step back, {again.name}"
+    again = window.capture_at_rest(frame_of(first))
     assert Picture(again).rows == Picture(first).rows, "a step back shows the same picture"
     window.key("r")
-    assert frame_of(window.capture()) == 0, "restart begins at frame 0"
+    window.capture_at_rest(0)
     window.click("pause-rendering")
     window.click("play")
     time.sleep(1.5)
