@@ -22,7 +22,7 @@ build() { # build PRESET TARGET...
 }
 
 build release
-ctest --test-dir build/release --output-on-failure --timeout 600 -j1
+ctest --test-dir build/release --output-on-failure --timeout 600 -j"$jobs"
 
 if [ "${1:-}" != --quick ]; then
     sanitized="test_base test_params test_image test_scene test_session"
@@ -32,5 +32,5 @@ if [ "${1:-}" != --quick ]; then
     export LSAN_OPTIONS=suppressions=$source_dir/tests/sanitizers/lsan.supp:print_suppressions=0
     export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=detect_stack_use_after_return=1
     pattern="^(${sanitized// /|})\$"
-    ctest --test-dir build/asan-ubsan --output-on-failure --timeout 900 -R "$pattern" -j1
+    ctest --test-dir build/asan-ubsan --output-on-failure --timeout 900 -R "$pattern" -j"$jobs"
 fi

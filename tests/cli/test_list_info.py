@@ -49,7 +49,7 @@ class List(CommandTest):
             self.assertIn(name, parameters)
         depth = parameters["path.max-depth"]
         self.assertEqual((depth["type"], depth["min"], depth["default"]), ("integer", 1, 6))
-        self.assertEqual(parameters["sampler.kind"]["options"], ["sobol", "halton", "independent"])
+        self.assertEqual(parameters["sampler.kind"]["options"], ["sobol", "halton", "independent", "blue-noise"])
         for parameter in parameters.values():
             self.assertTrue(parameter["help"], parameter["id"])
             self.assertRegex(parameter["id"], r"^[a-z0-9@.<>-]+$")
