@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -186,7 +187,12 @@ void Session::Impl::drawFrame(const Work& work) {
         }
     Timer timer;
     std::optional<FrameOutput> frame = engine.advance(request, work.stop);
-    if (frame) return complete(std::move(*frame), work);
+    if (frame) {
+        complete(std::move(*frame), work);
+        // The scene before, its loaders' scratch and its frames are gone: their memory goes back to the system.
+        if (work.cut && work.firstFrame == 0) malloc_trim(0);
+        return;
+    }
     const auto traced = static_cast<double>(engine.tracedSoFar().cameraRays);
     std::lock_guard lock(mutex);
     guarded = true;

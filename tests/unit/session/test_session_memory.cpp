@@ -43,26 +43,38 @@ void expectNoGrowth(size_t after, size_t warm) {
 
 using SessionMemory = SessionTest;
 
+/// Resident memory when loads that were cancelled have come to their end.
+size_t restingBytes() {
+    size_t least = residentBytes();
+    for (int still = 0; still < 10; ++still) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        const size_t now = residentBytes();
+        if (now + (size_t(1) << 20) < least) still = 0;
+        least = std::min(least, now);
+    }
+    return least;
+}
+
 TEST_F(SessionMemory, LoadingCancellingAndLoadingAgainInASession) {
     TemporaryFolder folder;
     const auto paths = scenes(folder);
-    size_t warm = 0;
-    for (int i = 0; i < kLoads; ++i) {
-        const auto& path = paths[static_cast<size_t>(i) % paths.size()];
-        const int width = 16 + i % 7;
+    const auto load = [&](const std::filesystem::path& path, int width, bool cancel) {
         session.open(path, -1, "", {{"render.width", std::to_string(width)}, {"render.height", "12"}});
-        if (i % 3 == 2) {
-            session.cancelLoading();
-        } else {
-            waitFor("the scene", [&] { return !session.loadStatus().loading; });
-            waitFor("its picture", [&] {
-                const auto snapshot = session.snapshot();
-                return snapshot && snapshot->extent.width == width && snapshot->scene->scene->path == session.document().scene()->path;
-            });
-        }
-        if (i == kWarmUp) warm = residentBytes();
+        if (cancel) return session.cancelLoading();
+        waitFor("the scene", [&] { return !session.loadStatus().loading; });
+        waitFor("its picture", [&] {
+            const auto snapshot = session.snapshot();
+            return snapshot && snapshot->extent.width == width && snapshot->scene->scene->path == session.document().scene()->path;
+        });
+    };
+    size_t warm = 0;
+    for (int i = 0; i <= kLoads; ++i) {
+        // What is measured holds the same scene both times.
+        const bool measured = i == kWarmUp || i == kLoads;
+        load(paths[measured ? 0 : static_cast<size_t>(i) % paths.size()], 16 + (measured ? 0 : i % 7), !measured && i % 3 == 2);
+        if (i == kWarmUp) warm = restingBytes();
     }
-    expectNoGrowth(residentBytes(), warm);
+    expectNoGrowth(restingBytes(), warm);
 }
 
 TEST(HeadlessMemory, LoadingAndRenderingAgain) {
