@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything with warnings as errors, and runs the whole suite; then builds the parsers,
-# the image code and the frame engine again with the address and undefined-behaviour sanitizers and runs their tests.
+# Installs what is missing, builds everything with warnings as errors, and runs the whole suite; then builds the parsers
+# and the image code again with the address and undefined-behaviour sanitizers and runs their tests. By hand, the same for
+# any other test:  cmake --preset asan-ubsan && cmake --build --preset asan-ubsan --target test_session
 #   ./tests/run.sh [--quick]     --quick leaves the sanitizers out
 set -euo pipefail
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -25,7 +26,7 @@ build release
 ctest --test-dir build/release --output-on-failure --timeout 600 -j"$jobs"
 
 if [ "${1:-}" != --quick ]; then
-    sanitized="test_base test_params test_image test_scene test_session"
+    sanitized="test_base test_params test_image test_scene"
     # shellcheck disable=SC2086
     build asan-ubsan --target $sanitized
     # Embree and Mesa keep allocations of their own until the process ends.
