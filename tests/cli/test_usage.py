@@ -68,6 +68,9 @@ class Usage(CommandTest):
             "broken.gltf": ('{"asset": {"version": "2.0"}, "scenes": [{"nodes": [7]}]}', ["broken.gltf"]),
             "broken.glb": ("glTF\x02\x00\x00\x00\xff\xff", ["broken.glb"]),
             "broken.obj": ("v 0 0 0\nf 1 2 99\n", ["broken.obj"]),
+            "garbage.obj": ("this is no obj\nfoo bar\n", ["garbage.obj", "no faces"]),
+            "empty.obj": ("", ["empty.obj", "no faces"]),
+            "cut.obj": ("v 0 0 0\nv 1 0 0\nv 0 1", ["cut.obj", "no faces"]),
         }
         for name, (text, parts) in cases.items():
             (self.folder / name).write_text(text)

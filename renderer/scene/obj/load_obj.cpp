@@ -93,6 +93,9 @@ Scene loadObj(const std::filesystem::path& path, MessageLog& log, const LoadOpti
     };
     step(0, "Reading geometry");
     const ParsedObj parsed = parse(path, log);
+    const auto hasFaces = [](const tinyobj::shape_t& shape) { return !shape.mesh.num_face_vertices.empty(); };
+    if (std::none_of(parsed.shapes.begin(), parsed.shapes.end(), hasFaces))
+        throwBadInput({.what = "holds no faces", .where = where, .expected = "an OBJ with polygons"});
     step(0.4f, "Decoding textures");
     ObjImages images(path.parent_path(), log);
     Scene scene;
