@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything with warnings as errors, and runs the whole suite; then builds the parsers
-# and the image code again with the address and undefined-behaviour sanitizers and runs their tests. By hand, the same for
-# any other test:  cmake --preset asan-ubsan && cmake --build --preset asan-ubsan --target test_session
+# Installs what is missing, builds everything with warnings as errors, and runs the whole suite; then builds the image
+# code and the loaders again with the address and undefined-behaviour sanitizers and feeds them damaged files. By hand, the
+# same for any other test:  cmake --preset asan-ubsan && cmake --build --preset asan-ubsan --target test_scene test_session
 #   ./tests/run.sh [--quick]     --quick leaves the sanitizers out
 set -euo pipefail
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -26,12 +26,13 @@ build release
 ctest --test-dir build/release --output-on-failure --timeout 600 -j"$jobs"
 
 if [ "${1:-}" != --quick ]; then
-    sanitized="test_base test_params test_image test_scene"
+    sanitized="test_base test_params test_image test_robustness"
     # shellcheck disable=SC2086
     build asan-ubsan --target $sanitized
     # Embree and Mesa keep allocations of their own until the process ends.
     export LSAN_OPTIONS=suppressions=$source_dir/tests/sanitizers/lsan.supp:print_suppressions=0
     export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=detect_stack_use_after_return=1
+    export LUMISCOPE_MUTATIONS=200
     pattern="^(${sanitized// /|})\$"
     ctest --test-dir build/asan-ubsan --output-on-failure --timeout 900 -R "$pattern" -j"$jobs"
 fi
