@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "app/option_text.h"
+#include "app/options/option_text.h"
 #include "base/error.h"
 #include "base/isa.h"
 #include "base/memory.h"

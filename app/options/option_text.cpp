@@ -1,4 +1,4 @@
-#include "app/option_text.h"
+#include "app/options/option_text.h"
 
 #include <fmt/format.h>
 
