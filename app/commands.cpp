@@ -1,5 +1,9 @@
 #include "app/commands.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <cstdio>
 
 #include "app/options/option_text.h"
@@ -7,13 +11,31 @@
 #include "base/isa.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "reconstruct/catalog.h"
 
 namespace lumi {
+namespace {
+
+/// Says which --set has no effect because the method that it belongs to does not run.
+void warnOfIdle(const Document& document, const SceneOptions& options, MessageLog& log) {
+    const std::vector<std::string> running = document.activeInstances();
+    for (const TypedValue& value : options.values) {
+        const std::string instance = value.id.substr(0, value.id.find('.'));
+        const std::string module = instance.substr(0, instance.find('@'));
+        const auto catalog = moduleCatalog();
+        const bool isModule = std::any_of(catalog.begin(), catalog.end(), [&](const ModuleEntry& e) { return module == e.id; });
+        if (!isModule || std::find(running.begin(), running.end(), instance) != running.end()) continue;
+        log.warning(fmt::format("{} {}={}: no effect, {} does not run; {} does", value.option, value.id, value.text, instance,
+                                fmt::join(running, " and ")));
+    }
+}
+
+}  // namespace
 
 void applyMachine(const MachineOptions& machine) {
     if (machine.threads > 0) setThreadCount(machine.threads);
     if (!machine.isa.empty()) setIsa(parseIsa(machine.isa));
-    if (!machine.memoryLimit.empty()) setMemoryLimit(parseBytes(machine.memoryLimit));
+    if (!machine.memoryLimit.empty()) setMemoryLimit(parseBytes(machine.memoryLimit, "--memory-limit"));
 }
 
 int parseSceneIndex(const TypedValue& value) {
@@ -58,9 +80,10 @@ void followCameraPath(Document& document, const std::optional<CameraPath>& path)
     if (path->aperture > 0) document.set("camera.aperture", path->aperture);
 }
 
-Document makeDocument(std::shared_ptr<const Scene> scene, const SceneOptions& options) {
+Document makeDocument(std::shared_ptr<const Scene> scene, const SceneOptions& options, MessageLog& log) {
     Document document(std::move(scene));
     for (const auto& [id, text, option] : options.values) document.setText(id, text, option);
+    warnOfIdle(document, options, log);
     return document;
 }
 

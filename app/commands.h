@@ -38,7 +38,8 @@ std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const 
 void followCameraPath(Document& document, const std::optional<CameraPath>& path);
 std::optional<CameraPath> readCameraPathOf(const SceneOptions& options);
 
-/// A document of the scene with all values of the options.
-Document makeDocument(std::shared_ptr<const Scene> scene, const SceneOptions& options);
+/// A document of the scene with all values of the options. A --set of a method's parameter counts for that one instance:
+/// where it is none of those that run, the log warns.
+Document makeDocument(std::shared_ptr<const Scene> scene, const SceneOptions& options, MessageLog& log);
 
 }  // namespace lumi

@@ -131,7 +131,7 @@ int runInfo(const SceneOptions& options, bool check, const std::filesystem::path
             std::stop_token stop) {
     const std::filesystem::path file = findScene(options.scene);
     const auto scene = openScene(file, options, log, stop);
-    const Document document = makeDocument(scene, options);
+    const Document document = makeDocument(scene, options, log);
     std::vector<FrameCheck> checks;
     if (check) {
         Tracer tracer;

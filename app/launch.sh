@@ -36,13 +36,24 @@ else
     reason="there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)"
 fi
 
-scene=atrium
-case ${1:-} in '' | -*) ;; *) scene=$1; shift ;; esac
+# The scene is the word that is no option and no option's value; render takes the options as they are.
+scene=
+options=()
+while [ $# -gt 0 ]; do
+    case $1 in
+        --json | --quiet | --half | -h | --help | --version) options+=("$1") ;;
+        --*=*) options+=("$1") ;;
+        --*) options+=("$1"); [ $# -gt 1 ] && { options+=("$2"); shift; } ;;
+        *) if [ -z "$scene" ]; then scene=$1; else options+=("$1"); fi ;;
+    esac
+    shift
+done
+scene=${scene:-atrium}
 pictures=$source_dir/build/pictures
 name=$(basename "$scene"); name=${name%.*}
 mkdir -p "$pictures"
 echo "No window: $reason. Rendering \"$scene\" headless instead ..." >&2
 rm -f "$pictures/$name.png" "$pictures/$name.exr"
-"$program" render "$scene" --size 640x360 --spp 64 --out "$pictures/$name.png" --out "$pictures/$name.exr" "$@"
+"$program" render "$scene" --size 640x360 --spp 64 --out "$pictures/$name.png" --out "$pictures/$name.exr" "${options[@]}"
 echo "Wrote $pictures/$name.png and $pictures/$name.exr (all settings are inside: lumiscope render --replay FILE)." >&2
 echo "The workbench itself, drawn without a display: $program view $scene --offscreen --out $pictures" >&2

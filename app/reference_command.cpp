@@ -69,7 +69,7 @@ class ReferenceJob {
 public:
     ReferenceJob(const ReferenceCommand& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop)
         : options_(options), file_(findScene(options.scene.scene)), scene_(openScene(file_, options.scene, log, stop)),
-          document_(makeDocument(scene_, options.scene)), path_(readCameraPathOf(options.scene)) {
+          document_(makeDocument(scene_, options.scene, log)), path_(readCameraPathOf(options.scene)) {
         printMessages(log, machine);
         document_.set("view.0.module", std::string("accumulate"));
         const auto sppGiven = std::any_of(options.scene.values.begin(), options.scene.values.end(),

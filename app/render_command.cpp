@@ -103,7 +103,7 @@ public:
     int render() {
         const fs::path file = findScene(options_.scene.scene);
         auto scene = openScene(file, options_.scene, log_, stop_);
-        Document document = makeDocument(scene, options_.scene);
+        Document document = makeDocument(scene, options_.scene, log_);
         choice_ = {0, options_.buffers, options_.half};
         const std::string& instance = document.view(choice_.view).module;
         BufferSelection::parse(choice_.buffers, instance, "--buffers");

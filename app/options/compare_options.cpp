@@ -24,7 +24,7 @@ public:
         app_->add_option("--mask", compare.mask, "Image of the same size: only where its luminance is above 0.5")
             ->type_name("FILE")->take_last();
         app_->add_option("--exposure", compare.exposureEv, "Stops, for metrics that judge the image as shown (0)")
-            ->type_name("EV")->check(CLI::Range(-100.0, 100.0).description(""))
+            ->type_name("EV")->check(between(-100.0, 100.0))
             ->take_last();
         app_->add_option("--flip-exposures", flipExposures_, "Exposure range of HDR-FLIP in stops (what the reference says)")
             ->type_name("START,STOP[,COUNT]")->take_last();

@@ -40,7 +40,7 @@ public:
         : Subcommand(parent, line, "list", "List what there is: scenes, modules, buffers, parameters, metrics, studies") {
         app_->add_option("what", line_.list.what, "scenes, modules, buffers, parameters, metrics or studies")
             ->required()->type_name("WHAT")
-            ->check(CLI::IsMember({"scenes", "modules", "buffers", "parameters", "metrics", "studies"}).description(""));
+            ->check(oneOf({"scenes", "modules", "buffers", "parameters", "metrics", "studies"}));
         app_->add_option("--module", line_.list.module, "Only what belongs to this module")->type_name("INSTANCE");
         addMachine(*app_, line_.machine, false);
         app_->footer("Examples:\n  lumiscope list parameters --module accumulate\n  lumiscope list buffers --json");

@@ -5,53 +5,79 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <tuple>
 
 #include "base/error.h"
 #include "session/document.h"
 
 namespace lumi {
 
+namespace {
+
+/// One option's text and what should stand there, for the parts of which it is made.
+class OptionText {
+public:
+    OptionText(const std::string& text, const std::string& option, const char* expected)
+        : text_(text), option_(option), expected_(expected) {}
+
+    [[noreturn]] void refuse() const { throwUsage({"not understood", option_, expected_, '"' + text_ + '"'}); }
+    [[noreturn]] void refuse(const char* what, const char* limit) const {
+        throwUsage({what, option_, limit, '"' + text_ + '"'});
+    }
+    /// A whole number of at least `least`, as a part of the text.
+    int64_t whole(const std::string& part, int64_t least) const {
+        int64_t value = 0;
+        const auto [end, code] = std::from_chars(part.data(), part.data() + part.size(), value);
+        if (code != std::errc() || end != part.data() + part.size() || value < least) refuse();
+        return value;
+    }
+    double number(const std::string& part, double limit) const {
+        double value = 0;
+        const auto [end, code] = std::from_chars(part.data(), part.data() + part.size(), value);
+        if (code != std::errc() || end != part.data() + part.size() || !(std::abs(value) <= limit)) refuse();
+        return value;
+    }
+    /// The two numbers around `mark`.
+    std::pair<int64_t, int64_t> pair(const char* mark, int64_t least) const {
+        const size_t at = text_.find(mark);
+        if (at == std::string::npos) refuse();
+        return {whole(text_.substr(0, at), least), whole(text_.substr(at + std::string(mark).size()), least)};
+    }
+
+private:
+    const std::string &text_, &option_;
+    const char* expected_;
+};
+
+}  // namespace
+
 int64_t parseWhole(const std::string& text, const std::string& option, const char* expected, int64_t least) {
-    int64_t value = 0;
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc() || end != text.data() + text.size() || value < least)
-        throwUsage({"not understood", option, expected, '"' + text + '"'});
-    return value;
+    return OptionText(text, option, expected).whole(text, least);
 }
 
 Extent2 parseSize(const std::string& text, const std::string& option) {
-    const size_t x = text.find('x');
-    const char* expected = "WIDTHxHEIGHT, as 1280x720";
-    if (x == std::string::npos) throwUsage({"not understood", option, expected, '"' + text + '"'});
-    const int64_t width = parseWhole(text.substr(0, x), option, expected, 1);
-    const int64_t height = parseWhole(text.substr(x + 1), option, expected, 1);
-    if (width > 16384 || height > 16384) throwUsage({"too large", option, "at most 16384x16384", '"' + text + '"'});
+    const OptionText typed(text, option, "WIDTHxHEIGHT of at least 1x1, as 1280x720");
+    const auto [width, height] = typed.pair("x", 1);
+    if (width > 16384 || height > 16384) typed.refuse("too large", "at most 16384x16384");
     return {static_cast<int>(width), static_cast<int>(height)};
 }
 
 FrameRange parseFrames(const std::string& text) {
-    const char* expected = "a number N, or a range A..B with A < B";
-    const size_t dots = text.find("..");
+    const std::string option = "--frames";
+    const OptionText typed(text, option, "a number N, or a range A..B with A < B");
     FrameRange range;
-    if (dots == std::string::npos) {
-        range.end = parseWhole(text, "--frames", expected, 1);
-    } else {
-        range.begin = parseWhole(text.substr(0, dots), "--frames", expected, 0);
-        range.end = parseWhole(text.substr(dots + 2), "--frames", expected, 0);
-        if (range.begin >= range.end) throwUsage({"not understood", "--frames", expected, '"' + text + '"'});
-    }
-    if (range.end > 10'000'000) throwUsage({"too many frames", "--frames", "at most 10000000", '"' + text + '"'});
+    if (text.find("..") == std::string::npos) range.end = typed.whole(text, 1);
+    else std::tie(range.begin, range.end) = typed.pair("..", 0);
+    if (range.begin >= range.end) typed.refuse();
+    if (range.end > 10'000'000) typed.refuse("too many frames", "at most 10000000");
     return range;
 }
 
 std::pair<uint64_t, uint64_t> parseSamples(const std::string& text, const std::string& option) {
-    const char* expected = "A..B with A < B, multiples of 16, as 0..1024";
-    const size_t dots = text.find("..");
-    if (dots == std::string::npos) throwUsage({"not understood", option, expected, '"' + text + '"'});
-    const int64_t begin = parseWhole(text.substr(0, dots), option, expected, 0);
-    const int64_t end = parseWhole(text.substr(dots + 2), option, expected, 0);
-    if (begin >= end || begin % 16 != 0 || end % 16 != 0) throwUsage({"not understood", option, expected, '"' + text + '"'});
-    if (end > 65536) throwUsage({"too many samples", option, "at most 65536", '"' + text + '"'});
+    const OptionText typed(text, option, "A..B with A < B, multiples of 16, as 0..1024");
+    const auto [begin, end] = typed.pair("..", 0);
+    if (begin >= end || begin % 16 != 0 || end % 16 != 0) typed.refuse();
+    if (end > 65536) typed.refuse("too many samples", "at most 65536");
     return {static_cast<uint64_t>(begin), static_cast<uint64_t>(end)};
 }
 
@@ -75,31 +101,24 @@ std::vector<std::string> splitList(const std::string& text) {
 }
 
 FlipExposures parseFlipExposures(const std::string& text, const std::string& option) {
-    const char* expected = "START,STOP in stops, or START,STOP,COUNT, as -3,3,5";
+    const OptionText typed(text, option, "START,STOP in stops, or START,STOP,COUNT, as -3,3,5");
     const std::vector<std::string> parts = splitList(text);
-    const auto number = [&](const std::string& part) {
-        double value = 0;
-        const auto [end, code] = std::from_chars(part.data(), part.data() + part.size(), value);
-        if (code != std::errc() || end != part.data() + part.size() || !(std::abs(value) <= 100))
-            throwUsage({"not understood", option, expected, '"' + text + '"'});
-        return value;
-    };
-    if (parts.size() != 2 && parts.size() != 3) throwUsage({"not understood", option, expected, '"' + text + '"'});
-    FlipExposures range{number(parts[0]), number(parts[1]), 2};
-    if (range.stop < range.start) throwUsage({"not understood", option, expected, '"' + text + '"'});
-    range.count = parts.size() == 3 ? static_cast<int>(std::min<int64_t>(parseWhole(parts[2], option, expected, 1), 1000))
+    if (parts.size() != 2 && parts.size() != 3) typed.refuse();
+    FlipExposures range{typed.number(parts[0], 100), typed.number(parts[1], 100), 2};
+    if (range.stop < range.start) typed.refuse();
+    range.count = parts.size() == 3 ? static_cast<int>(std::min<int64_t>(typed.whole(parts[2], 1), 1000))
                                     : std::max(2, static_cast<int>(std::ceil(range.stop - range.start)));
     return range;
 }
 
 std::array<int, 4> parseCrop(const std::string& text, const std::string& option) {
-    const char* expected = "X,Y,W,H in pixels, as 0,0,256,256";
+    const OptionText typed(text, option, "X,Y,W,H in pixels, as 0,0,256,256");
     const std::vector<std::string> parts = splitList(text);
-    if (parts.size() != 4) throwUsage({"not understood", option, expected, '"' + text + '"'});
+    if (parts.size() != 4) typed.refuse();
     std::array<int, 4> crop{};
     for (size_t i = 0; i < crop.size(); ++i) {
-        const int64_t value = parseWhole(parts[i], option, expected, i < 2 ? 0 : 1);
-        if (value > 1 << 20) throwUsage({"too large", option, expected, '"' + text + '"'});
+        const int64_t value = typed.whole(parts[i], i < 2 ? 0 : 1);
+        if (value > 1 << 20) typed.refuse();
         crop[i] = static_cast<int>(value);
     }
     return crop;

@@ -18,7 +18,7 @@ public:
         app_->get_option("--module")->description("accumulate, which is what converges");
         app_->add_option("--error", reference.error,
                         "Instead of --spp: go on until the relative standard error is at most this")
-            ->type_name("E")->check(CLI::Range(1e-6, 1e3).description(""))
+            ->type_name("E")->check(between(1e-6, 1e3))
             ->excludes("--spp")
             ->take_last();
         app_->add_option("--samples", samples_, "Only the sums of samples A to B-1, multiples of 16, for `merge`")

@@ -1,5 +1,11 @@
 #include "app/options/shared_options.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+
 namespace lumi {
 
 void addRepeatable(CLI::App& app, const char* name, std::vector<std::string>& values, const char* type, const char* help) {
@@ -30,9 +36,28 @@ void addMachine(CLI::App& app, MachineOptions& machine, bool computes) {
     if (!computes) return;
     app.add_option("--threads", machine.threads, "Threads to use (one for each core); never changes the image")
         ->type_name("N")
-        ->check(CLI::Range(1, 1024).description(""));
+        ->check(between(1, 1024));
     app.add_option("--isa", machine.isa, "Instruction set to use: baseline, v3 or v4 (the best)")->type_name("NAME");
     app.add_option("--memory-limit", machine.memoryLimit, "Refuse to use more, as 8G or 50% (75%)")->type_name("SIZE");
+}
+
+CLI::Validator oneOf(std::vector<std::string> names) {
+    const auto check = [names = std::move(names)](const std::string& text) {
+        if (std::find(names.begin(), names.end(), text) != names.end()) return std::string();
+        return fmt::format("expected one of {}, found \"{}\"", fmt::join(names, ", "), text);
+    };
+    return CLI::Validator(check, "");
+}
+
+CLI::Validator between(double least, double most) {
+    const auto check = [least, most](const std::string& text) {
+        double value = 0;
+        const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool number = code == std::errc() && end == text.data() + text.size();
+        if (number && value >= least && value <= most) return std::string();
+        return fmt::format("expected {} to {}, found \"{}\"", least, most, text);
+    };
+    return CLI::Validator(check, "");
 }
 
 void FramesText::add(CLI::App& app) {
@@ -45,7 +70,7 @@ void FramesText::add(CLI::App& app) {
 void ProgressText::add(CLI::App& app) {
     app.add_option("--progress", when, "auto (if standard error is a terminal), always or never")
         ->type_name("WHEN")
-        ->check(CLI::IsMember({"auto", "always", "never"}).description(""));
+        ->check(oneOf({"auto", "always", "never"}));
 }
 
 Progress ProgressText::progress() const {

@@ -15,6 +15,10 @@ void addCameraPath(CLI::App& app, SceneOptions& scene);
 /// --json and --quiet; of a command that computes also --threads, --isa and --memory-limit.
 void addMachine(CLI::App& app, MachineOptions& machine, bool computes);
 
+/// Checks of an option's text that refuse in the house's form: "expected one of ..., found ...".
+CLI::Validator oneOf(std::vector<std::string> names);
+CLI::Validator between(double least, double most);
+
 /// --frames and --warm-up as typed.
 struct FramesText {
     std::string frames, warmUp;

@@ -17,7 +17,7 @@ public:
         app_->add_option("--script", line_.view.script, "Input events to play, one a line")->type_name("FILE");
         app_->add_option("--window", size_, "Size of the window's content (1280x800)")->type_name("WxH");
         app_->add_option("--samples", line_.view.samples, "Without a script: samples a pixel before the shot (16)")
-            ->type_name("N")->check(CLI::Range(1, 1 << 20).description(""));
+            ->type_name("N")->check(between(1, 1 << 20));
         frames_.add(*app_);
         app_->add_option("--buffers", line_.view.buffers,
                         "Write an .exr beside each PNG, with these layers, as `list buffers` names them, or all")

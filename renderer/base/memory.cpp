@@ -60,7 +60,7 @@ std::string formatBytes(uint64_t bytes) {
     return unit == 0 ? fmt::format("{} B", bytes) : fmt::format("{:.1f} {}", value, units[unit]);
 }
 
-uint64_t parseBytes(const std::string& text) {
+uint64_t parseBytes(const std::string& text, const std::string& where) {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
     std::string unit = end;
@@ -71,7 +71,7 @@ uint64_t parseBytes(const std::string& text) {
     if (unit == "M" || unit == "MB" || unit == "MiB") scale = 1024.0 * 1024;
     if (unit == "G" || unit == "GB" || unit == "GiB") scale = 1024.0 * 1024 * 1024;
     if (end == text.c_str() || scale < 0 || !(value > 0) || !(value * scale < 9e18))
-        throwUsage({"not a size", "", "a number with K, M, G or %", '"' + text + '"'});
+        throwUsage({"not a size", where, "a number with K, M, G or %", '"' + text + '"'});
     return static_cast<uint64_t>(value * scale);
 }
 

@@ -206,7 +206,7 @@ ContractFinding emptySky(const CheckedFrame& frame) {
 }  // namespace
 
 std::string ContractFinding::text() const {
-    if (holds()) return fmt::format("{}: holds in {} pixels", rule, checked);
+    if (holds()) return fmt::format("{}: holds in {} pixel{}", rule, checked, checked == 1 ? "" : "s");
     return fmt::format("{}: broken in {} of {} pixels; worst at ({}, {}): {:.4g}{}{}, allowed {:.4g}", rule, violations,
                        checked, worst.x, worst.y, value, unit.empty() ? "" : " ", unit, limit);
 }

@@ -23,6 +23,12 @@ class Usage(CommandTest):
         self.refused(2, ["main", "corner", "--camera"], "render", "cornell", "--camera", "nowhere")
         self.refused(2, ["scenes", "parameters", "metrics"], "list", "things")
         self.refused(2, ["v3", "--isa"], "render", "cornell", "--isa", "v9")
+        for parts, arguments in ((['expected one of scenes, modules', 'found "things"'], ["list", "things"]),
+                                 (['--size', 'WIDTHxHEIGHT', 'found "0x7"'], ["render", "cornell", "--size", "0x7"]),
+                                 (['--threads', 'expected 1 to 1024', 'found "0"'], ["render", "cornell", "--threads", "0"]),
+                                 (['--progress', 'expected one of auto, always, never'], ["render", "cornell", "--progress", "x"]),
+                                 (['--memory-limit', 'found "lots"'], ["render", "cornell", "--memory-limit", "lots"])):
+            self.refused(2, parts, *arguments)
         self.assertEqual(self.files(), [])
 
     def test_bad_values_are_refused_before_anything_is_rendered(self):
@@ -40,6 +46,12 @@ class Usage(CommandTest):
         self.refused(2, ["--offscreen"], "view", "cornell", "--out", "x")
         self.refused(2, ["--out"], "view", "cornell", "--offscreen")
         self.assertEqual(self.files(), [])
+
+    def test_a_value_for_a_method_that_does_not_run_is_told(self):
+        command = ["render", "cornell", *TINY, "--out", "a.png", "--module", "svgf"]
+        warned = self.good(*command, "--set", "svgf@b.levels=2").err
+        self.assertRegex(warned, r"warning: --set svgf@b\.levels=2: no effect, svgf@b does not run; svgf does")
+        self.assertNotIn("warning", self.good(*command, "--set", "svgf.levels=2").err)
 
     def test_the_window_refuses_what_render_refuses(self):
         out = ["--offscreen", "--out", "x", *TINY]
