@@ -1,4 +1,5 @@
 """Reading PNG files and comparing what they show, with nothing but the standard library."""
+import json
 import struct
 import zlib
 
@@ -66,3 +67,13 @@ def difference(a, b, box, step=3):
             total += sum(abs(p - q) for p, q in zip(a.pixel(x, y), b.pixel(x, y))) / 3
             count += 1
     return total / count
+
+
+def truncated_glb(path):
+    """A binary glTF that promises a triangle and ends in the middle of its JSON."""
+    text = json.dumps({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+                       "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+                       "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}]})
+    body = text.encode() + b" " * (-len(text) % 4)
+    whole = struct.pack("<4sIIII", b"glTF", 2, 20 + len(body), len(body), 0x4E4F534A) + body
+    path.write_bytes(whole[:len(whole) // 2])

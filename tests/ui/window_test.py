@@ -13,7 +13,7 @@ import subprocess
 import sys
 import time
 
-from pictures import Picture, difference
+from pictures import Picture, difference, truncated_glb
 
 PROGRAM, FOLDER = sys.argv[1], pathlib.Path(sys.argv[2])
 HERE = pathlib.Path(__file__).parent
@@ -283,13 +283,17 @@ def walk_through(window):
     assert difference(after, wiped, PICTURE) > 5, "the dropped scene is on the screen"
     passed("opens a dropped file")
 
-    broken = FOLDER / "broken.gltf"
-    broken.write_text("{ this is no glTF")
-    subprocess.run([sys.executable, HERE / "xdnd_source.py", window.id, str(x), str(y), broken], check=True)
-    time.sleep(2)
-    assert window.title().startswith("dropped"), "a broken file leaves the scene"
-    window.shot("11-broken")
-    passed("keeps the scene when a file is broken")
+    not_json = FOLDER / "broken.gltf"
+    not_json.write_text("{ this is no glTF")
+    truncated = FOLDER / "truncated.glb"
+    truncated_glb(truncated)
+    for broken in (not_json, truncated, FOLDER / "missing.glb"):
+        subprocess.run([sys.executable, HERE / "xdnd_source.py", window.id, str(x), str(y), broken], check=True)
+        window.until(f"the message about {broken.name}",
+                     lambda: any(name.startswith("toast:") and broken.name in name for name in window.items()))
+        assert window.title().startswith("dropped"), "a broken file leaves the scene"
+        assert difference(window.shot("11-" + broken.stem), after, (20, 160, 900, 500)) < 2, "and its picture"
+    passed("keeps the scene and says why when a file is broken, truncated or missing")
 
     window.key("ctrl+q")
     assert window.process.wait(PATIENCE) == 0, "quits with exit code 0"

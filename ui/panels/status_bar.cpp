@@ -138,6 +138,9 @@ void drawToast(AppState& state, const ImRect& area) {
              withAlpha(colourOf(last.severity), alpha));
     list.AddText(nullptr, 0, corner + ImVec2(px(42), px(11)), withAlpha(palette::kText, alpha), last.text.c_str(),
                  nullptr, width - px(60));
+    // It lies above all windows, so none of them clips it.
+    if (UiMap& map = ui().map; map.enabled())
+        map.add("toast:" + last.text, {corner.x, corner.y}, {corner.x + size.x, corner.y + size.y});
 }
 
 }  // namespace lumi
