@@ -109,17 +109,9 @@ void ReferencePicture::write(const std::filesystem::path& path, const Reference&
         signals = depth;
     }
     frame.signals = signals;
-    const std::string extension = lowerExtension(path), text = stateOf(reference.samples);
-    if (extension == ".exr") {
-        BufferSelection selection = BufferSelection::parse(buffers, view.module, "--buffers");
-        selection.taps.clear();
-        writeExr(path, exportLayers(frame, view.module, selection, text), half);
-    } else if (extension == ".png") {
-        DisplayInfo info;
-        writePng(path, *drawView(frame, view, info), {{kStateKey, text}});
-    } else {
-        throwUsage({"cannot write this kind of file", path.string(), ".exr or .png", '"' + extension + '"'});
-    }
+    BufferSelection selection = BufferSelection::parse(buffers, view.module, "--buffers");
+    selection.taps.clear();
+    writeView(path, frame, view, selection, half, stateOf(reference.samples));
 }
 
 }  // namespace lumi

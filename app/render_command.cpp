@@ -13,6 +13,7 @@
 #include "base/files.h"
 #include "base/isa.h"
 #include "base/memory.h"
+#include "math/statistics.h"
 
 namespace lumi {
 namespace fs = std::filesystem;
@@ -40,12 +41,6 @@ std::string lastInstance(const Replay& replay, int view, std::string instance) {
         if (frame <= replay.last && values.contains(id) && values[id].is_string())
             instance = values[id].get<std::string>();
     return instance;
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const size_t half = values.size() / 2;
-    return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 /// What is told at the end, gathered frame by frame.

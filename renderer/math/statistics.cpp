@@ -40,6 +40,13 @@ double gammaQFraction(double a, double x) {
 
 }  // namespace
 
+double median(std::vector<double> values) {
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return values.size() % 2 ? *middle : 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
 double normalTail(double z) { return 0.5 * std::erfc(z / std::sqrt(2.0)); }
 
 double gammaQ(double a, double x) {

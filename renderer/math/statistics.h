@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace lumi {
 
@@ -24,6 +25,9 @@ private:
     int64_t count_ = 0;
     double mean_ = 0, m2_ = 0;
 };
+
+/// The middle value, or the mean of the two in the middle; 0 of none.
+double median(std::vector<double> values);
 
 /// Upper tails: the probability that a standard normal exceeds z, and that chi-square with `dof` exceeds x.
 double normalTail(double z);

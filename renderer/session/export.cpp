@@ -102,19 +102,23 @@ ExrLayers exportLayers(const FrameOutput& frame, const std::string& instance, co
     return layers;
 }
 
-void exportView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
-                const OutputChoice& choice, const std::string& state) {
-    const ViewSettings& view = document.view(choice.view);
+void writeView(const std::filesystem::path& path, const FrameOutput& frame, const ViewSettings& view,
+               const BufferSelection& buffers, bool half, const std::string& state) {
     const std::string extension = lowerExtension(path);
     if (extension == ".exr") {
-        const BufferSelection buffers = BufferSelection::parse(choice.buffers, view.module, "--buffers");
-        writeExr(path, exportLayers(frame, view.module, buffers, state), choice.half);
+        writeExr(path, exportLayers(frame, view.module, buffers, state), half);
     } else if (extension == ".png") {
         DisplayInfo info;
         writePng(path, *drawView(frame, view, info), {{kStateKey, state}});
     } else {
-        throwUsage({"cannot write this kind of file", path.string(), ".exr, .png or .mp4", '"' + extension + '"'});
+        throwUsage({"cannot write this kind of file", path.string(), ".exr or .png", '"' + extension + '"'});
     }
+}
+
+void exportView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
+                const OutputChoice& choice, const std::string& state) {
+    const ViewSettings& view = document.view(choice.view);
+    writeView(path, frame, view, BufferSelection::parse(choice.buffers, view.module, "--buffers"), choice.half, state);
 }
 
 }  // namespace lumi

@@ -33,8 +33,12 @@ struct OutputChoice {
 ExrLayers exportLayers(const FrameOutput& frame, const std::string& instance, const BufferSelection& buffers,
                        const std::string& state);
 
-/// Writes the view as .exr (linear, with the layers of `choice`) or .png (as shown). `document` is the one that the
-/// frame was drawn from. Throws Error(Usage) for other extensions.
+/// Writes what a view shows as .exr (linear, with the layers of `buffers`, colours as half if wanted) or .png (as
+/// shown). Throws Error(Usage) for other extensions.
+void writeView(const std::filesystem::path& path, const FrameOutput& frame, const ViewSettings& view,
+               const BufferSelection& buffers, bool half, const std::string& state);
+
+/// The same of one of a document's views. `document` is the one that the frame was drawn from.
 void exportView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
                 const OutputChoice& choice, const std::string& state);
 

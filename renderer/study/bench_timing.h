@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/timer.h"
+#include "math/statistics.h"
 
 namespace lumi {
 
@@ -14,12 +15,7 @@ class RunTimes {
 public:
     void add(double ms) { times_.push_back(ms); }
     size_t count() const { return times_.size(); }
-    double median() const {
-        std::vector<double> sorted = times_;
-        std::sort(sorted.begin(), sorted.end());
-        const size_t half = sorted.size() / 2;
-        return sorted.empty() ? 0 : sorted.size() % 2 ? sorted[half] : 0.5 * (sorted[half - 1] + sorted[half]);
-    }
+    double median() const { return lumi::median(times_); }
     /// (slowest - fastest) / median.
     double spread() const {
         if (times_.empty()) return 0;

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "image/exr.h"
+#include "math/statistics.h"
 #include "measure/measure.h"
 #include "study/frame_runner.h"
 #include "study/temporal_metrics.h"
@@ -15,13 +16,6 @@
 namespace lumi {
 using nlohmann::json;
 namespace {
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    const size_t half = values.size() / 2;
-    return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 /// Wall-clock times by stage, gathered frame by frame; the first frame builds the scene and counts in none but `build`.
 class JobTimes {

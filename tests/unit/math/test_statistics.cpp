@@ -10,6 +10,14 @@
 namespace lumi {
 namespace {
 
+TEST(Statistics, MedianIsTheMiddle) {
+    EXPECT_EQ(median({}), 0);
+    EXPECT_EQ(median({3}), 3);
+    EXPECT_EQ(median({9, 1, 5}), 5);
+    EXPECT_EQ(median({9, 1, 5, 2}), 3.5);
+    EXPECT_EQ(median({4, 4, 4, 0, 100, 100}), 4);
+}
+
 TEST(Statistics, MomentsMatchTheDefinition) {
     RunningMoments moments;
     EXPECT_EQ(moments.sampleVariance(), 0);

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -9,6 +8,7 @@
 
 #include "base/files.h"
 #include "scene_file_support.h"
+#include "support/schema_verdicts.h"
 #include "support/temporary_folder.h"
 
 namespace lumi::test {
@@ -44,25 +44,6 @@ constexpr const char* kEverything = R"({
   "render": {"size": [1280, 720], "fps": 60, "exposure": 0, "module": "accumulate", "set": {"path.max-depth": 4}}
 })";
 
-/// What python3-jsonschema says of each document: '1' valid, '0' not. One run of Python for all.
-std::string verdicts(const fs::path& schema, const std::vector<fs::path>& documents) {
-    std::string command =
-        "python3 -c '"
-        "import json,sys,jsonschema\n"
-        "s=json.load(open(sys.argv[1]));c=jsonschema.validators.validator_for(s);c.check_schema(s)\n"
-        "print(*(int(c(s).is_valid(json.load(open(f)))) for f in sys.argv[2:]),sep=\"\")' " +
-        schema.string();
-    for (const fs::path& document : documents) command += ' ' + document.string();
-    std::string answer;
-    if (FILE* pipe = popen(command.c_str(), "r")) {
-        for (int c = fgetc(pipe); c != EOF && c != '\n'; c = fgetc(pipe)) answer += static_cast<char>(c);
-        pclose(pipe);
-    }
-    return answer;
-}
-
-bool haveValidator() { return std::system("python3 -c 'import jsonschema' 2>/dev/null") == 0; }
-
 TEST(SceneSchema, TheShippedFileIsTheGeneratedOne) {
     const fs::path shipped = kScenes / "scene.schema.json";
     if (std::getenv("LUMISCOPE_UPDATE_SCHEMA")) writeFileAtomically(shipped, std::string_view(sceneFileSchema()));
@@ -72,15 +53,15 @@ TEST(SceneSchema, TheShippedFileIsTheGeneratedOne) {
 
 TEST(SceneSchema, ParserAndSchemaTakeTheSameFile) {
     EXPECT_EQ(refusal(kEverything), "");
-    if (!haveValidator()) GTEST_SKIP() << "python3-jsonschema is not installed";
+    if (!haveSchemaValidator()) GTEST_SKIP() << "python3-jsonschema is not installed";
     TemporaryFolder folder;
     writeFileAtomically(folder / "schema.json", std::string_view(sceneFileSchema()));
     writeFileAtomically(folder / "all.json", std::string_view(kEverything));
-    EXPECT_EQ(verdicts(folder / "schema.json", {folder / "all.json"}), "1");
+    EXPECT_EQ(schemaVerdicts(folder / "schema.json", {folder / "all.json"}), "1");
 }
 
 TEST(SceneSchema, RefusesWhatTheParserRefuses) {
-    if (!haveValidator()) GTEST_SKIP() << "python3-jsonschema is not installed";
+    if (!haveSchemaValidator()) GTEST_SKIP() << "python3-jsonschema is not installed";
     TemporaryFolder folder;
     writeFileAtomically(folder / "schema.json", std::string_view(sceneFileSchema()));
     const std::string head = "{\"version\": 1, ";
@@ -93,17 +74,17 @@ TEST(SceneSchema, RefusesWhatTheParserRefuses) {
         files.push_back(folder / ("bad-" + std::to_string(files.size()) + ".json"));
         writeFileAtomically(files.back(), std::string_view(text));
     }
-    EXPECT_EQ(verdicts(folder / "schema.json", files), std::string(files.size(), '0'));
+    EXPECT_EQ(schemaVerdicts(folder / "schema.json", files), std::string(files.size(), '0'));
 }
 
 TEST(SceneSchema, AcceptsEveryShippedScene) {
-    if (!haveValidator()) GTEST_SKIP() << "python3-jsonschema is not installed";
+    if (!haveSchemaValidator()) GTEST_SKIP() << "python3-jsonschema is not installed";
     std::vector<fs::path> files;
     for (const fs::directory_entry& file : fs::directory_iterator(kScenes))
         if (file.path().extension() == ".json" && file.path().stem().extension() != ".schema")
             files.push_back(file.path());
     std::sort(files.begin(), files.end());
-    const std::string answers = verdicts(kScenes / "scene.schema.json", files);
+    const std::string answers = schemaVerdicts(kScenes / "scene.schema.json", files);
     ASSERT_EQ(answers.size(), files.size());
     for (size_t i = 0; i < files.size(); ++i) EXPECT_EQ(answers[i], '1') << files[i];
 }

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <opensubdiv/far/primvarRefiner.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +10,10 @@
 #include <tuple>
 
 #include "scene/obj/cage.h"
-#include "scene/subdivision_topology.h"
+#include "support/refined_cage.h"
 
-namespace lumi {
+namespace lumi::test {
 namespace {
-namespace Far = OpenSubdiv::Far;
 
 /// Two hexagons that share three edges: two folds and a boundary around. With the semi-sharp crease from boundary to
 /// boundary, building its patches directly reads out of bounds in OpenSubdiv 3.5.
@@ -25,29 +23,11 @@ const char* kHexagons =
 const char* kSemiSharp = "#t crease 2/1/0 1 2 5.0\n#t crease 2/1/0 2 6 5.0\n#t crease 2/1/0 6 5 5.0\n";
 const char* kDart = "#t crease 2/1/0 1 2 10.0\n";
 
-struct Point {
-    Vec3 p{0};
-    void Clear(void* = nullptr) { p = Vec3(0); }
-    void AddWithWeight(const Point& other, float weight) { p += weight * other.p; }
-};
-
 std::vector<Vec3> limitPoints(const SubdivisionCage& cage, int levels) {
-    const auto refiner = makeRefiner(cage, "test");
-    Far::TopologyRefiner::UniformOptions options(levels);
-    options.fullTopologyInLastLevel = true;
-    refiner->RefineUniform(options);
-    const Far::PrimvarRefiner interpolate(*refiner);
-    std::vector<Point> points(cage.positions.size());
-    for (size_t i = 0; i < points.size(); ++i) points[i].p = cage.positions[i];
-    for (int level = 1; level <= levels; ++level) {
-        std::vector<Point> next(static_cast<size_t>(refiner->GetLevel(level).GetNumVertices()));
-        interpolate.Interpolate(level, points, next);
-        points = std::move(next);
-    }
-    std::vector<Point> limit(points.size());
-    interpolate.Limit(points, limit);
+    std::vector<CagePoint> limit;
+    refined(cage, levels, &limit);
     std::vector<Vec3> result;
-    for (const Point& point : limit) result.push_back(point.p);
+    for (const CagePoint& point : limit) result.push_back(point.p);
     return result;
 }
 
@@ -122,4 +102,4 @@ TEST(SubdivisionFolds, OtherFacesAreTessellatedAsWithoutThem) {
 }
 
 }  // namespace
-}  // namespace lumi
+}  // namespace lumi::test

@@ -2,7 +2,6 @@
 #include "scene/subdivision.h"
 
 #include <gtest/gtest.h>
-#include <opensubdiv/far/primvarRefiner.h>
 
 #include <algorithm>
 #include <array>
@@ -13,12 +12,11 @@
 
 #include "base/error.h"
 #include "scene/obj/cage.h"
-#include "scene/subdivision_topology.h"
+#include "support/refined_cage.h"
 
-namespace lumi {
+namespace lumi::test {
 namespace {
 namespace fs = std::filesystem;
-namespace Far = OpenSubdiv::Far;
 
 fs::path assets() {
     const char* folder = std::getenv("LUMISCOPE_ASSETS");
@@ -28,33 +26,6 @@ fs::path assets() {
 const char* kCube =
     "v -1 -1 1\nv 1 -1 1\nv -1 1 1\nv 1 1 1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 -1\nv 1 -1 -1\n"
     "f 1 2 4 3\nf 3 4 6 5\nf 5 6 8 7\nf 7 8 2 1\nf 2 8 6 4\nf 7 1 3 5\n";
-
-/// A value that OpenSubdiv's refiner interpolates.
-struct Point {
-    Vec3 p{0};
-    void Clear(void* = nullptr) { p = Vec3(0); }
-    void AddWithWeight(const Point& other, float weight) { p += weight * other.p; }
-};
-
-std::vector<Point> refined(const SubdivisionCage& cage, int levels, std::vector<Point>* limit = nullptr) {
-    const auto refiner = makeRefiner(cage, "test");
-    Far::TopologyRefiner::UniformOptions options(levels);
-    options.fullTopologyInLastLevel = true;
-    refiner->RefineUniform(options);
-    const Far::PrimvarRefiner interpolate(*refiner);
-    std::vector<Point> points(cage.positions.size());
-    for (size_t i = 0; i < points.size(); ++i) points[i].p = cage.positions[i];
-    for (int level = 1; level <= levels; ++level) {
-        std::vector<Point> next(static_cast<size_t>(refiner->GetLevel(level).GetNumVertices()));
-        interpolate.Interpolate(level, points, next);
-        points = std::move(next);
-    }
-    if (limit) {
-        limit->resize(points.size());
-        interpolate.Limit(points, *limit);
-    }
-    return points;
-}
 
 float distanceToNearest(const Vec3& p, const std::vector<Vec3>& cloud) {
     float best = kInfinity;
@@ -87,9 +58,9 @@ TEST(Subdivision, CagesRefineToPublishedBaselines) {
         if (level > 1 || shape == "catmark_chaikin1" || shape.find("hedit") != std::string::npos || shape.find("bilinear") == 0) continue;
         const SubdivisionCage cage = loadCage(assets() / (shape + ".obj"));
         const std::vector<Vec3> baseline = readPositions(entry.path());
-        const std::vector<Point> ours = refined(cage, level + 1);
+        const std::vector<CagePoint> ours = refined(cage, level + 1);
         float worst = 0;
-        for (const Point& point : ours) worst = std::max(worst, distanceToNearest(point.p, baseline));
+        for (const CagePoint& point : ours) worst = std::max(worst, distanceToNearest(point.p, baseline));
         EXPECT_LT(worst, 2e-6f) << name;
         EXPECT_EQ(ours.size(), baseline.size()) << name;
         ++compared;
@@ -103,10 +74,10 @@ TEST(Subdivision, TessellationLiesOnTheLimitOfRefinement) {
     const std::string creased = std::string(kCube) + "#t crease 2/1/0 2 3 4.0\n#t corner 1/1/0 4 2.5\n";
     for (const std::string& text : {std::string(kCube), creased}) {
         const SubdivisionCage cage = parseCage(text, "cube");
-        std::vector<Point> limit;
+        std::vector<CagePoint> limit;
         refined(cage, 6, &limit);
         std::vector<Vec3> cloud;
-        for (const Point& point : limit) cloud.push_back(point.p);
+        for (const CagePoint& point : limit) cloud.push_back(point.p);
         const SubdivisionSurface surface = tessellate(cage, 4, "cube");
         for (const Vec3& p : surface.mesh.positions) EXPECT_LT(distanceToNearest(p, cloud), 2e-5f);
     }
@@ -174,4 +145,4 @@ TEST(Subdivision, RefusesBrokenCages) {
 }
 
 }  // namespace
-}  // namespace lumi
+}  // namespace lumi::test
