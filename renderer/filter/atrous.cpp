@@ -2,20 +2,10 @@
 
 #include <cassert>
 
-#include "base/isa.h"
 #include "base/parallel.h"
 #include "filter/atrous_kernels.h"
 
 namespace lumi {
-
-namespace baseline { const AtrousKernels& atrousTable(); }
-namespace v3 { const AtrousKernels& atrousTable(); }
-namespace v4 { const AtrousKernels& atrousTable(); }
-
-const AtrousKernels& atrousKernels() {
-    return selectKernels(baseline::atrousTable(), v3::atrousTable(), v4::atrousTable());
-}
-
 namespace {
 
 constexpr int64_t kRows = 8;  ///< rows of one task

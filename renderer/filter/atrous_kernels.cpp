@@ -6,7 +6,6 @@
 #include "math/kernel_math.h"
 
 namespace lumi::LUMI_ISA {
-const AtrousKernels& atrousTable();
 namespace {
 
 constexpr float kLog2E = 1.44269504f;
@@ -26,6 +25,28 @@ inline float log2OfCosine(float x) {
     p = p * t - 0.72136018f;
     p = p * t + 1.4426965f;
     return p * t + static_cast<float>(exponent);
+}
+
+/// 2^x for x in [-126, 0], below that 2^-126; relative error below 4e-6, which weights do not feel. NaN gives 2^-126.
+inline float weightExp2(float x) {
+    x = x > -126.0f ? x : -126.0f;
+    const float shifted = x + 12582912.0f;  // 1.5 * 2^23: the mantissa's low bits become the nearest integer
+    const float f = x - (shifted - 12582912.0f);
+    float p = 0.00966636852f;  // interpolant of 2^f in the Chebyshev nodes of [-0.5, 0.5], degree 4
+    p = p * f + 0.0559219758f;
+    p = p * f + 0.24022349f;
+    p = p * f + 0.693121045f;
+    p = p * f + 1.0f;
+    return bitsToFloat(static_cast<int32_t>(static_cast<uint32_t>(floatToBits(p)) + (static_cast<uint32_t>(floatToBits(shifted)) << 23)));
+}
+
+/// cosine^sigma. With Squarings >= 0 sigma is 2^Squarings.
+template <int Squarings>
+inline float normalWeight(float cosine, float sigma) {
+    if constexpr (Squarings < 0) return weightExp2(sigma * log2OfCosine(cosine < 1.0f ? cosine : 1.0f));
+    float power = cosine > 0.0f ? cosine : 0.0f;
+    for (int i = 0; i < Squarings; ++i) power *= power;
+    return power;
 }
 
 /// log2 of w_z w_n (eqs. 3 and 4) of the tap for pixels [tap.begin, tap.end), into `exponent[x - first]`.
@@ -51,35 +72,76 @@ inline void geometryExponents(const AtrousRow& row, const TapSpan& tap, int firs
     }
 }
 
+/// Sums of the components, over a block of pixels.
 struct Sums {
     alignas(64) float weight[kBlock], r[kBlock], g[kBlock], b[kBlock], variance[kBlock];
 };
 
-/// Adds a tap to a component's sums: w = h w_z w_n w_l.
-inline void addTap(const AtrousRow& row, int c, const TapSpan& tap, int first, float h, const float* __restrict exponent,
-                   Sums& sums) {
-    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row.y) * row.width;
+/// One component as the loops below read and write it: pointers at the block's first pixel.
+struct ComponentTap {
+    const float* __restrict luminance;
+    const float* __restrict r;
+    const float* __restrict g;
+    const float* __restrict b;
+    const float* __restrict variance;
+    const float* __restrict scale;
+};
+
+inline ComponentTap componentTap(const AtrousRow& row, int c, std::ptrdiff_t at, int first) {
     const IlluminationView& in = row.in[c];
-    const float* __restrict l = in.luminance + at;
-    const float* __restrict lq = l + tap.offset;
-    const float* __restrict rq = in.rgb[0] + at + tap.offset;
-    const float* __restrict gq = in.rgb[1] + at + tap.offset;
-    const float* __restrict bq = in.rgb[2] + at + tap.offset;
-    const float* __restrict vq = in.sampleVariance + at + tap.offset;
-    const float* __restrict scale = row.luminanceScale[c];
-    float* __restrict weight = sums.weight;
-    float* __restrict r = sums.r;
-    float* __restrict g = sums.g;
-    float* __restrict b = sums.b;
-    float* __restrict v = sums.variance;
-    for (int x = tap.begin; x < tap.end; ++x) {
-        const int k = x - first;
-        const float w = h * kernelExp2(exponent[k] - std::fabs(l[x] - lq[x]) * scale[x]);
-        weight[k] += w;
-        r[k] += w * rq[x];
-        g[k] += w * gq[x];
-        b[k] += w * bq[x];
-        v[k] += w * w * vq[x];
+    return {in.luminance + at, in.rgb[0] + at, in.rgb[1] + at, in.rgb[2] + at, in.sampleVariance + at, row.luminanceScale[c] + first};
+}
+
+/// w = h w_z w_n w_l of neighbour k + offset, `scaled` being h w_z w_n's parts, onto the sums.
+inline void addNeighbour(const ComponentTap& in, std::ptrdiff_t k, std::ptrdiff_t offset, float depthExponent, float hn, float& weight,
+                         float& r, float& g, float& b, float& v) {
+    const std::ptrdiff_t q = k + offset;
+    const float w = hn * weightExp2(depthExponent - std::fabs(in.luminance[k] - in.luminance[q]) * in.scale[k]);
+    weight += w;
+    r += w * in.r[q];
+    g += w * in.g[q];
+    b += w * in.b[q];
+    v += w * w * in.variance[q];
+}
+
+/// Adds the taps at +offset and, with Both, at -offset, which have eq. 3's denominator in common, for pixels
+/// [begin, end) of the row.
+template <int Components, int Squarings, bool Both>
+void addTaps(const AtrousRow& row, const TapSpan& tap, float h, int first, int begin, int end, Sums* sums) {
+    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row.y) * row.width + first, offset = tap.offset;
+    const float* __restrict z = row.inverseDepth + at;
+    const float* __restrict sx = row.slopeX + at;
+    const float* __restrict sy = row.slopeY + at;
+    const float* __restrict nx = row.normal[0] + at;
+    const float* __restrict ny = row.normal[1] + at;
+    const float* __restrict nz = row.normal[2] + at;
+    const ComponentTap in0 = componentTap(row, 0, at, first), in1 = componentTap(row, Components - 1, at, first);
+    Sums& s0 = sums[0];
+    Sums& s1 = sums[Components - 1];
+    const float plane = row.edges.planeDistance ? 1.0f : 0.0f, sigmaZ = row.edges.sigmaDepth, sigmaN = row.edges.sigmaNormal;
+    const float dx = tap.dx, dy = tap.dy;
+#pragma GCC ivdep
+    for (int k = begin - first; k < end - first; ++k) {
+        const float rise = sx[k] * dx + sy[k] * dy, planeRise = plane * rise;
+        const float perDistance = -kLog2E / (sigmaZ * std::fabs(rise) + kDepthEpsilon * z[k] + 1e-30f);
+        const std::ptrdiff_t q = k + offset, m = k - offset;
+        const float e = std::fabs(z[q] - z[k] - planeRise) * perDistance;
+        const float n = h * normalWeight<Squarings>(nx[k] * nx[q] + ny[k] * ny[q] + nz[k] * nz[q], sigmaN);
+        float weight = s0.weight[k], r = s0.r[k], g = s0.g[k], b = s0.b[k], v = s0.variance[k];
+        addNeighbour(in0, k, offset, e, n, weight, r, g, b, v);
+        float e2 = 0, n2 = 0;
+        if constexpr (Both) {
+            e2 = std::fabs(z[m] - z[k] + planeRise) * perDistance;
+            n2 = h * normalWeight<Squarings>(nx[k] * nx[m] + ny[k] * ny[m] + nz[k] * nz[m], sigmaN);
+            addNeighbour(in0, k, -offset, e2, n2, weight, r, g, b, v);
+        }
+        s0.weight[k] = weight, s0.r[k] = r, s0.g[k] = g, s0.b[k] = b, s0.variance[k] = v;
+        if constexpr (Components == 2) {
+            weight = s1.weight[k], r = s1.r[k], g = s1.g[k], b = s1.b[k], v = s1.variance[k];
+            addNeighbour(in1, k, offset, e, n, weight, r, g, b, v);
+            if constexpr (Both) addNeighbour(in1, k, -offset, e2, n2, weight, r, g, b, v);
+            s1.weight[k] = weight, s1.r[k] = r, s1.g[k] = g, s1.b[k] = b, s1.variance[k] = v;
+        }
     }
 }
 
@@ -116,23 +178,44 @@ inline void finishSums(const AtrousRow& row, int c, int first, int last, const S
     }
 }
 
-void filterRow(const AtrousRow& row) {
-    Sums sums[AtrousRow::kMaxComponents];
-    alignas(64) float exponent[kBlock];
+/// The taps at (dx, dy) and (-dx, -dy) of pixels [first, last).
+template <int Components, int Squarings>
+void addPair(const AtrousRow& row, int dx, int dy, float h, int first, int last, Sums* sums) {
+    const TapSpan plus = tapSpan(row.width, row.height, row.y, dx, dy, first, last);
+    const TapSpan minus = tapSpan(row.width, row.height, row.y, -dx, -dy, first, last);
+    const int begin = plus.begin > minus.begin ? plus.begin : minus.begin, end = plus.end < minus.end ? plus.end : minus.end;
+    const auto one = [&](const TapSpan& tap, int from, int to) {
+        if (from < to) addTaps<Components, Squarings, false>(row, tap, h, first, from, to, sums);
+    };
+    if (begin >= end) {
+        one(plus, plus.begin, plus.end);
+        one(minus, minus.begin, minus.end);
+        return;
+    }
+    addTaps<Components, Squarings, true>(row, plus, h, first, begin, end, sums);
+    one(plus, plus.begin, begin < plus.end ? begin : plus.end);
+    one(plus, end > plus.begin ? end : plus.begin, plus.end);
+    one(minus, minus.begin, begin < minus.end ? begin : minus.end);
+    one(minus, end > minus.begin ? end : minus.begin, minus.end);
+}
+
+template <int Components, int Squarings>
+void filterBlocks(const AtrousRow& row) {
+    Sums sums[Components];
     for (int first = 0; first < row.width; first += kBlock) {
         const int last = first + kBlock < row.width ? first + kBlock : row.width;
-        for (int c = 0; c < row.components; ++c) startSums(row, c, first, last, sums[c]);
-        for (int j = -2; j <= 2; ++j)
-            for (int i = -2; i <= 2; ++i) {
-                if (i == 0 && j == 0) continue;
-                const TapSpan tap = tapSpan(row.width, row.height, row.y, i * row.step, j * row.step, first, last);
-                if (tap.begin >= tap.end) continue;
-                geometryExponents(row, tap, first, exponent);
-                const float h = kSpline[i + 2] * kSpline[j + 2];
-                for (int c = 0; c < row.components; ++c) addTap(row, c, tap, first, h, exponent, sums[c]);
-            }
-        for (int c = 0; c < row.components; ++c) finishSums(row, c, first, last, sums[c]);
+        for (int c = 0; c < Components; ++c) startSums(row, c, first, last, sums[c]);
+        for (int j = 0; j <= 2; ++j)
+            for (int i = j > 0 ? -2 : 1; i <= 2; ++i)
+                addPair<Components, Squarings>(row, i * row.step, j * row.step, kSpline[i + 2] * kSpline[j + 2], first, last, sums);
+        for (int c = 0; c < Components; ++c) finishSums(row, c, first, last, sums[c]);
     }
+}
+
+void filterRow(const AtrousRow& row) {
+    const bool squared = row.edges.sigmaNormal == 128.0f;  // 2^7, the paper's
+    if (row.components == 1) return squared ? filterBlocks<1, 7>(row) : filterBlocks<1, -1>(row);
+    squared ? filterBlocks<2, 7>(row) : filterBlocks<2, -1>(row);
 }
 
 void luminanceScaleRow(const float* variance, int width, int height, int y, float sigmaLuminance, bool prefilter,
@@ -168,7 +251,10 @@ void spatialVarianceRow(const AtrousRow& row, const float* historyLength, float 
         const int last = first + kNarrow < row.width ? first + kNarrow : row.width;
         int pixels = 0;
         for (int x = first; x < last; ++x) pixels += historyLength[at + x] < minLength ? 1 : 0;
-        if (pixels == 0) continue;
+        if (pixels == 0) {
+            for (int x = first; x < last; ++x) variance[x] = centred[at + x];
+            continue;
+        }
         for (int x = first; x < last; ++x) {
             weight[x - first] = 1;
             sum[x - first] = 0;
@@ -193,7 +279,7 @@ void spatialVarianceRow(const AtrousRow& row, const float* historyLength, float 
         for (int x = first; x < last; ++x) {
             const float shift = sum[x - first] / weight[x - first];
             const float estimate = squares[x - first] / weight[x - first] - shift * shift;
-            variance[x] = historyLength[at + x] < minLength ? (estimate > 0 ? estimate : 0.0f) : variance[x];
+            variance[x] = historyLength[at + x] < minLength ? (estimate > 0 ? estimate : 0.0f) : centred[at + x];
         }
     }
 }

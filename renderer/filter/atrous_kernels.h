@@ -1,4 +1,5 @@
 #pragma once
+#include "base/isa.h"
 #include "filter/edge_stopping.h"
 
 namespace lumi {
@@ -42,11 +43,11 @@ struct AtrousKernels {
     /// Rec. 709 luminance of a row.
     void (*luminanceRow)(const float* const rgb[3], float* out, int width);
     /// Variance of luminance over a 7x7 window weighted by depth and normals (sec. 4.2), where historyLength < minLength;
-    /// elsewhere `variance`, the output row, stays. `mean` and `centred` are planes of first and second centred moments.
+    /// elsewhere `centred`. `mean` and `centred` are planes of first and second centred moments, `variance` is a row.
     void (*spatialVarianceRow)(const AtrousRow& row, const float* historyLength, float minLength, const float* mean,
                                const float* centred, float* variance);
 };
 
-const AtrousKernels& atrousKernels();
+LUMI_KERNELS(AtrousKernels, atrous)
 
 }  // namespace lumi

@@ -1,18 +1,9 @@
 #include "filter/edge_avoiding.h"
 
-#include "base/isa.h"
 #include "base/parallel.h"
 #include "filter/edge_avoiding_kernels.h"
 
 namespace lumi {
-
-namespace baseline { const EdgeAvoidingKernels& edgeAvoidingTable(); }
-namespace v3 { const EdgeAvoidingKernels& edgeAvoidingTable(); }
-namespace v4 { const EdgeAvoidingKernels& edgeAvoidingTable(); }
-
-const EdgeAvoidingKernels& edgeAvoidingKernels() {
-    return selectKernels(baseline::edgeAvoidingTable(), v3::edgeAvoidingTable(), v4::edgeAvoidingTable());
-}
 
 bool edgeAvoidingLevel(const Signals& signals, const EdgeAvoidingSettings& settings, int level, const Image& in, Image& out,
                        std::stop_token stop) {

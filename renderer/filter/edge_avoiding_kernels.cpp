@@ -4,7 +4,6 @@
 #include "math/kernel_math.h"
 
 namespace lumi::LUMI_ISA {
-const EdgeAvoidingKernels& edgeAvoidingTable();
 namespace {
 
 struct Sums {

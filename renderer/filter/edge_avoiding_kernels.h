@@ -1,4 +1,5 @@
 #pragma once
+#include "base/isa.h"
 
 namespace lumi {
 
@@ -18,6 +19,6 @@ struct EdgeAvoidingKernels {
     void (*filterRow)(const EdgeAvoidingRow& row);
 };
 
-const EdgeAvoidingKernels& edgeAvoidingKernels();
+LUMI_KERNELS(EdgeAvoidingKernels, edgeAvoiding)
 
 }  // namespace lumi

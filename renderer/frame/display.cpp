@@ -7,7 +7,6 @@
 #include <cstring>
 #include <numeric>
 
-#include "base/isa.h"
 #include "base/parallel.h"
 #include "frame/colour_maps.h"
 #include "frame/display_kernels.h"
@@ -187,10 +186,6 @@ int64_t convertRows(Extent2 extent, Image8& out, const Row& row) {
 }
 
 }  // namespace
-
-const DisplayKernels& displayKernels() {
-    return selectKernels(baseline::displayTable(), v3::displayTable(), v4::displayTable());
-}
 
 DisplayInfo convert(const Image& image, const char* channels, const char* defaultMap, const DisplaySettings& settings,
                     Image8& out) {

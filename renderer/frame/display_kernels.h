@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 
+#include "base/isa.h"
+
 namespace lumi {
 
 /// Rows of the display conversion; pixels come out as 0xAABBGGRR. All return how many pixels held NaN or infinity:
@@ -22,17 +24,6 @@ struct DisplayKernels {
     void (*encodeSrgb)(const float* linear, int count, float* out);
 };
 
-/// For the instruction set in use.
-const DisplayKernels& displayKernels();
-
-namespace baseline {
-const DisplayKernels& displayTable();
-}
-namespace v3 {
-const DisplayKernels& displayTable();
-}
-namespace v4 {
-const DisplayKernels& displayTable();
-}
+LUMI_KERNELS(DisplayKernels, display)
 
 }  // namespace lumi

@@ -3,18 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/isa.h"
 #include "base/parallel.h"
 #include "measure/measure_kernels.h"
 
 namespace lumi {
-namespace baseline { const MeasureKernels& measureTable(); }
-namespace v3 { const MeasureKernels& measureTable(); }
-namespace v4 { const MeasureKernels& measureTable(); }
-
-const MeasureKernels& measureKernels() {
-    return selectKernels(baseline::measureTable(), v3::measureTable(), v4::measureTable());
-}
 
 std::vector<float> gaussianWeights(int taps, double sigma) {
     std::vector<double> exact(static_cast<size_t>(taps));

@@ -3,7 +3,6 @@
 #include "math/kernel_math.h"
 
 namespace lumi::LUMI_ISA {
-const MeasureKernels& measureTable();
 namespace {
 
 /// Sums stay in registers for a chunk of pixels while the taps pass over it.

@@ -1,4 +1,5 @@
 #pragma once
+#include "base/isa.h"
 
 namespace lumi {
 
@@ -29,6 +30,6 @@ struct MeasureKernels {
                     const float* product, float* ssim, float* contrast, int width);
 };
 
-const MeasureKernels& measureKernels();
+LUMI_KERNELS(MeasureKernels, measure)
 
 }  // namespace lumi

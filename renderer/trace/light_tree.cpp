@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 
-#include "base/isa.h"
 #include "base/parallel.h"
 #include "math/hash.h"
 
@@ -332,10 +331,6 @@ size_t LightTree::byteCount() const {
     return nodes_.capacity() * sizeof(LightTreeNode) + groups_.capacity() * sizeof(LightTreeGroup) +
            intensityBefore_.capacity() * sizeof(double) +
            (parents_.capacity() + places_.capacity() + order_.capacity() + ranks_.capacity()) * sizeof(uint32_t);
-}
-
-const LightTreeKernels& lightTreeKernels() {
-    return selectKernels(baseline::lightTreeTable(), v3::lightTreeTable(), v4::lightTreeTable());
 }
 
 }  // namespace lumi

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 
+#include "base/isa.h"
+
 namespace lumi {
 
 /// Eight lights or groups of lights, a column each: what bounds where they are and where they shine to.
@@ -61,16 +63,6 @@ struct LightTreeKernels {
     float (*share)(const LightTreeView& tree, const LightTreePoint& point, float elsewhere);
 };
 
-const LightTreeKernels& lightTreeKernels();
-
-namespace baseline {
-const LightTreeKernels& lightTreeTable();
-}
-namespace v3 {
-const LightTreeKernels& lightTreeTable();
-}
-namespace v4 {
-const LightTreeKernels& lightTreeTable();
-}
+LUMI_KERNELS(LightTreeKernels, lightTree)
 
 }  // namespace lumi
