@@ -33,7 +33,7 @@ bool atrousLevel(const SurfaceGuide& guide, const AtrousSettings& settings, int 
 
 /// Variance where the history is shorter than `minLength` frames, from a 7x7 window weighted by depth and world-space
 /// normals [Schied17, sec. 4.2]. `mean` and `centred` are the first moment and the second about it, one channel each;
-/// `sampleVariance` keeps its value where the history is long enough. Returns false if stopped.
+/// where the history is long enough `sampleVariance` becomes `centred`. Returns false if stopped.
 bool estimateVarianceSpatially(const SurfaceGuide& guide, const EdgeStopping& edges, const float* historyLength,
                                float minLength, const float* mean, const float* centred, float* sampleVariance,
                                std::stop_token stop);

@@ -2,31 +2,14 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 
 #include "base/parallel.h"
+#include "filter/demodulation_kernels.h"
 
 namespace lumi {
 namespace {
 
 constexpr int64_t kGrain = 1 << 13;
-constexpr float kLeastAlbedo = 0.01f;  ///< as the signals have it
-
-/// The lobes' albedos together. An albedo of exactly 1 beside one that is smaller is the mark of an undivided lobe.
-inline float combinedAlbedo(float diffuse, float specular) {
-    float sum = diffuse + specular;
-    if (diffuse == 1) sum = specular;
-    else if (specular == 1) sum = diffuse;
-    sum = sum < 1 ? sum : 1.0f;
-    return sum >= kLeastAlbedo ? sum : (std::isfinite(sum) ? kLeastAlbedo : 1.0f);
-}
-
-/// The value, or 0 with `bad` set where it is no finite number.
-inline float finiteOr0(float value, float& bad) {
-    const bool finite = std::fabs(value) <= 3.402823466e38f;
-    bad = finite ? bad : 1.0f;
-    return finite ? value : 0.0f;
-}
 
 }  // namespace
 
@@ -34,42 +17,40 @@ void demodulate(const Signals& signals, DemodulatedFrame& frame) {
     const Extent2 extent = signals.extent();
     for (Image* image : {&frame.emission, &frame.albedo, &frame.direct, &frame.indirect})
         if (image->extent() != extent) image->reset(extent, 3);
-    frame.dropped.reset(extent, 1);
+    if (frame.dropped.extent() != extent) frame.dropped.reset(extent, 1);
     std::atomic<int64_t> dropped{0};
     parallelRanges(extent.area(), kGrain, [&](int64_t begin, int64_t end) {
-        float* bad = frame.dropped.data();
+        float* bad = frame.dropped.data() + begin;
+        std::fill(bad, bad + (end - begin), 0.0f);
         for (int c = 0; c < 3; ++c) {
-            const float* diffuse = signals[Signal::Albedo].plane(c).data;
-            const float* specular = signals[Signal::SpecularAlbedo].plane(c).data;
-            const float* inEmission = signals[Signal::Emission].plane(c).data;
-            const float* inDirect = signals[Signal::Direct].plane(c).data;
-            const float* inIndirect = signals[Signal::Indirect].plane(c).data;
-            float* emission = frame.emission.plane(c).data;
-            float* albedo = frame.albedo.plane(c).data;
-            float* direct = frame.direct.plane(c).data;
-            float* indirect = frame.indirect.plane(c).data;
-            for (int64_t i = begin; i < end; ++i) {
-                const float a = combinedAlbedo(diffuse[i], specular[i]);
-                albedo[i] = a;
-                emission[i] = finiteOr0(inEmission[i], bad[i]);
-                direct[i] = finiteOr0(inDirect[i] / a, bad[i]);
-                indirect[i] = finiteOr0(inIndirect[i] / a, bad[i]);
-            }
+            const auto in = [&](Signal signal) { return signals[signal].plane(c).data + begin; };
+            const auto to = [&](Image& image) { return image.plane(c).data + begin; };
+            demodulationKernels().divide({static_cast<int>(end - begin), in(Signal::Albedo), in(Signal::SpecularAlbedo),
+                                          in(Signal::Emission), in(Signal::Direct), in(Signal::Indirect), to(frame.albedo),
+                                          to(frame.emission), to(frame.direct), to(frame.indirect), bad});
         }
-        dropped += std::count(bad + begin, bad + end, 1.0f);
+        dropped += std::count(bad, bad + (end - begin), 1.0f);
     });
     frame.droppedPixels = dropped;
 }
 
+void DemodulatedFrame::addComponents(Image& sum) const {
+    if (sum.extent() != direct.extent()) sum.reset(direct.extent(), 3);
+    parallelRanges(static_cast<int64_t>(sum.size()), kGrain, [&](int64_t begin, int64_t end) {
+        for (int64_t i = begin; i < end; ++i) sum.data()[i] = direct.data()[i] + indirect.data()[i];
+    });
+}
+
+size_t DemodulatedFrame::bytes() const {
+    return emission.bytes() + albedo.bytes() + direct.bytes() + indirect.bytes() + dropped.bytes();
+}
+
 void remodulate(const DemodulatedFrame& frame, const Image& direct, const Image* indirect, Image& out) {
     const Extent2 extent = frame.albedo.extent();
-    out.reset(extent, 3);
+    if (out.extent() != extent || out.channels() != 3) out.reset(extent, 3);
     parallelRanges(static_cast<int64_t>(out.size()), kGrain, [&](int64_t begin, int64_t end) {
-        const float* emission = frame.emission.data();
-        const float* albedo = frame.albedo.data();
-        const float* d = direct.data();
-        for (int64_t i = begin; i < end; ++i)
-            out.data()[i] = emission[i] + albedo[i] * (indirect ? d[i] + indirect->data()[i] : d[i]);
+        demodulationKernels().multiply(frame.emission.data() + begin, frame.albedo.data() + begin, direct.data() + begin,
+                                       indirect ? indirect->data() + begin : nullptr, out.data() + begin, static_cast<int>(end - begin));
     });
 }
 

@@ -17,6 +17,10 @@ struct DemodulatedFrame {
     Image indirect;   ///< RGB, demodulated
     Image dropped;    ///< Y, 1 where a value of the input was not finite and stands as 0
     int64_t droppedPixels = 0;
+
+    /// direct + indirect.
+    void addComponents(Image& sum) const;
+    size_t bytes() const;
 };
 
 /// What demodulate() reads.

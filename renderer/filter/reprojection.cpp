@@ -1,6 +1,9 @@
 #include "filter/reprojection.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "filter/reprojection_kernels.h"
 
 namespace lumi {
 
@@ -22,83 +25,129 @@ void ReprojectionSettings::describe(ParameterVisitor& v) {
               .help = "Where all four taps are refused, look among the 3x3 pixels around the point (sec. 4.1: thin geometry)"});
 }
 
-void SurfaceRecord::copyFrom(const Signals& signals) {
-    inverseDepth = signals[Signal::InverseDepth];
-    objectNormal = signals[Signal::ObjectNormal];
-    objectId = signals.ids(Signal::ObjectId);
+void SurfaceRecord::reset(Extent2 extent) {
+    if (objectId.extent() == extent) return;
+    inverseDepth.reset(extent, 1);
+    objectNormal.reset(extent, 3);
+    objectId.reset(extent, 1);
 }
 
-/// A pixel's point as the previous frame should have seen it.
-struct Reprojection::Point {
-    uint32_t object;
-    float normal[3];
-    float inverseDepth;  ///< expected then
-    float allowed;       ///< how far a neighbour's may differ
-};
+void SurfaceRecord::copyRows(const Signals& signals, int begin, int end) {
+    const int64_t first = static_cast<int64_t>(begin) * signals.extent().width, last = static_cast<int64_t>(end) * signals.extent().width;
+    const auto copy = [&](const auto& from, auto to) { std::copy(from.data + first, from.data + last, to.data + first); };
+    copy(signals[Signal::InverseDepth].plane(0), inverseDepth.plane(0));
+    for (int c = 0; c < 3; ++c) copy(signals[Signal::ObjectNormal].plane(c), objectNormal.plane(c));
+    copy(signals.ids(Signal::ObjectId).plane(0), objectId.plane(0));
+}
+
+void SurfaceRecord::copyFrom(const Signals& signals) {
+    reset(signals.extent());
+    copyRows(signals, 0, signals.extent().height);
+}
+
+void ReprojectedRow::resize(int width) {
+    for (int k = 0; k < 4; ++k) {
+        index[k].resize(static_cast<size_t>(width));
+        refusals[k].resize(static_cast<size_t>(width));
+        weight[k].resize(static_cast<size_t>(width));
+    }
+}
+
+bool ReprojectedRow::lost(int x) const {
+    const auto at = static_cast<size_t>(x);
+    return refusals[0][at] != 0 && refusals[1][at] != 0 && refusals[2][at] != 0 && refusals[3][at] != 0;
+}
 
 Reprojection::Reprojection(const Signals& signals, const SurfaceRecord& previous, const ReprojectionSettings& settings)
     : signals_(signals),
       previous_(previous),
       settings_(settings),
-      extent_(signals.extent()),
       normalCosine_(std::cos(radians(settings.normalToleranceDeg)) - 1e-5f) {}
 
-// Written so that NaN in any of the inputs refuses the tap.
-uint8_t Reprojection::refusal(const Point& point, int x, int y) const {
-    if (x < 0 || y < 0 || x >= extent_.width || y >= extent_.height) return kTapOffScreen;
-    uint8_t refused = kTapKept;
-    if (previous_.objectId.at(0, x, y) != point.object) refused |= kTapOtherObject;
-    const float difference = std::fabs(previous_.inverseDepth.at(0, x, y) - point.inverseDepth);
-    if (!(difference <= point.allowed)) refused |= kTapDepth;
-    float cosine = 0;
-    for (int c = 0; c < 3; ++c) cosine += previous_.objectNormal.at(c, x, y) * point.normal[c];
-    if (!(cosine >= normalCosine_)) refused |= kTapNormal;
-    return refused;
+void Reprojection::tapRange(int y, int begin, int end, int32_t* const index[4], float* const weight[4],
+                            int32_t* const refusals[4]) const {
+    ReprojectionRow row;
+    row.width = signals_.extent().width;
+    row.height = signals_.extent().height;
+    row.y = y;
+    row.begin = begin;
+    row.end = end;
+    for (int c = 0; c < 3; ++c) {
+        row.motion[c] = signals_[Signal::Motion].plane(c).data;
+        row.objectNormal[c] = signals_[Signal::ObjectNormal].plane(c).data;
+        row.previousNormal[c] = previous_.objectNormal.plane(c).data;
+    }
+    for (int c = 0; c < 2; ++c) row.slope[c] = signals_[Signal::DepthGradient].plane(c).data;
+    row.depth = signals_[Signal::Depth].data();
+    row.object = signals_.ids(Signal::ObjectId).data();
+    row.previousInverseDepth = previous_.inverseDepth.data();
+    row.previousObject = previous_.objectId.data();
+    row.depthTolerance = settings_.depthTolerance;
+    row.normalCosine = normalCosine_;
+    for (int k = 0; k < 4; ++k) {
+        row.index[k] = index[k];
+        row.weight[k] = weight[k];
+        row.refusals[k] = refusals[k];
+    }
+    reprojectionKernels().tapRow(row);
+}
+
+void Reprojection::row(int y, ReprojectedRow& row) const {
+    const int width = signals_.extent().width;
+    row.resize(width);
+    int32_t *index[4], *refusals[4];
+    float* weight[4];
+    for (int k = 0; k < 4; ++k) {
+        index[k] = row.index[k].data();
+        weight[k] = row.weight[k].data();
+        refusals[k] = row.refusals[k].data();
+    }
+    tapRange(y, 0, width, index, weight, refusals);
 }
 
 ReprojectedTaps Reprojection::taps(int x, int y) const {
+    int32_t at[4], why[4];
+    float parts[4];
+    int32_t* const index[4] = {at, at + 1, at + 2, at + 3};
+    int32_t* const refusals[4] = {why, why + 1, why + 2, why + 3};
+    float* const weight[4] = {parts, parts + 1, parts + 2, parts + 3};
+    tapRange(y, x, x + 1, index, weight, refusals);
     ReprojectedTaps taps;
-    const Image& motion = signals_[Signal::Motion];
-    Point point;
-    point.object = signals_.ids(Signal::ObjectId).at(0, x, y);
-    const float px = static_cast<float>(x) + motion.at(0, x, y), py = static_cast<float>(y) + motion.at(1, x, y);
-    const bool near = px > -2 && py > -2 && px < static_cast<float>(extent_.width) + 1 && py < static_cast<float>(extent_.height) + 1;
-    if (point.object == 0 || !near) {
-        taps.refusals.fill(kTapOffScreen);
-        return taps;
+    for (size_t k = 0; k < 4; ++k) {
+        taps.refusals[k] = static_cast<uint8_t>(why[k]);
+        if (why[k] != kTapKept) continue;
+        taps.index[static_cast<size_t>(taps.count)] = at[k];
+        taps.weight[static_cast<size_t>(taps.count++)] = parts[k];
     }
-    for (int c = 0; c < 3; ++c) point.normal[c] = signals_[Signal::ObjectNormal].at(c, x, y);
-    point.inverseDepth = 1 / (signals_[Signal::Depth].at(0, x, y) + motion.at(2, x, y));
-    const Image& slope = signals_[Signal::DepthGradient];
-    point.allowed = settings_.depthTolerance * point.inverseDepth +
-                    2 * (std::fabs(slope.at(0, x, y)) + std::fabs(slope.at(1, x, y)));
+    if (taps.count > 0) return taps;
+    const ReprojectedTaps wide = widen(x, y);
+    if (wide.count == 0) return taps;
+    const auto refused = taps.refusals;
+    taps = wide;
+    taps.refusals = refused;
+    return taps;
+}
 
-    taps.x0 = static_cast<int>(std::floor(px));
-    taps.y0 = static_cast<int>(std::floor(py));
-    const float fx = px - static_cast<float>(taps.x0), fy = py - static_cast<float>(taps.y0);
-    const float bilinear[4] = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
-    float lost = 0;
-    for (int k = 0; k < 4; ++k) {
-        const int qx = taps.x0 + (k & 1), qy = taps.y0 + (k >> 1);
-        const size_t at = static_cast<size_t>(k);
-        taps.refusals[at] = bilinear[k] > 0 ? refusal(point, qx, qy) : uint8_t(kTapUnused);
-        if (taps.refusals[at] != kTapKept) {
-            lost += bilinear[k];
-            continue;
-        }
-        taps.index[static_cast<size_t>(taps.count)] = qy * extent_.width + qx;
-        taps.weight[static_cast<size_t>(taps.count++)] = bilinear[k];
-    }
-    if (taps.count > 0) {
-        for (int k = 0; k < taps.count; ++k) taps.weight[static_cast<size_t>(k)] += lost / static_cast<float>(taps.count);
-        return taps;
-    }
-    if (!settings_.wideFallback) return taps;
+ReprojectedTaps Reprojection::widen(int x, int y) const {
+    ReprojectedTaps taps;
+    const Extent2 extent = signals_.extent();
+    const Image& motion = signals_[Signal::Motion];
+    const uint32_t object = signals_.ids(Signal::ObjectId).at(0, x, y);
+    const float px = static_cast<float>(x) + motion.at(0, x, y), py = static_cast<float>(y) + motion.at(1, x, y);
+    const bool near = px > -2 && py > -2 && px < static_cast<float>(extent.width) + 1 && py < static_cast<float>(extent.height) + 1;
+    if (!settings_.wideFallback || object == 0 || !near) return taps;
+    const float expected = 1 / (signals_[Signal::Depth].at(0, x, y) + motion.at(2, x, y));
+    const Image& slope = signals_[Signal::DepthGradient];
+    const float allowed = settings_.depthTolerance * expected + 2 * (std::fabs(slope.at(0, x, y)) + std::fabs(slope.at(1, x, y)));
     const int cx = static_cast<int>(std::floor(px + 0.5f)), cy = static_cast<int>(std::floor(py + 0.5f));
-    for (int j = -1; j <= 1; ++j)
-        for (int i = -1; i <= 1; ++i)
-            if (refusal(point, cx + i, cy + j) == kTapKept)
-                taps.index[static_cast<size_t>(taps.count++)] = (cy + j) * extent_.width + cx + i;
+    for (int j = std::max(cy - 1, 0); j <= std::min(cy + 1, extent.height - 1); ++j)
+        for (int i = std::max(cx - 1, 0); i <= std::min(cx + 1, extent.width - 1); ++i) {
+            float cosine = 0;
+            for (int c = 0; c < 3; ++c) cosine += previous_.objectNormal.at(c, i, j) * signals_[Signal::ObjectNormal].at(c, x, y);
+            const bool alike = previous_.objectId.at(0, i, j) == object && cosine >= normalCosine_ &&
+                               std::fabs(previous_.inverseDepth.at(0, i, j) - expected) <= allowed;
+            if (alike) taps.index[static_cast<size_t>(taps.count++)] = j * extent.width + i;
+        }
     for (int k = 0; k < taps.count; ++k) taps.weight[static_cast<size_t>(k)] = 1 / static_cast<float>(taps.count);
     taps.wide = taps.count > 0;
     return taps;

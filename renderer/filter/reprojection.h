@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <vector>
 
+#include "filter/tap_refusal.h"
 #include "frame/signals.h"
 #include "params/parameter.h"
 
@@ -23,6 +25,9 @@ struct SurfaceRecord {
     Image objectNormal;  ///< 3 channels
     IdImage objectId;
 
+    void reset(Extent2 extent);
+    /// Rows [begin, end) of a frame of this extent.
+    void copyRows(const Signals& signals, int begin, int end);
     void copyFrom(const Signals& signals);
     size_t bytes() const { return inverseDepth.bytes() + objectNormal.bytes() + objectId.bytes(); }
 };
@@ -31,16 +36,6 @@ struct SurfaceRecord {
 inline SignalSet reprojectionSignals() {
     return {Signal::Depth, Signal::DepthGradient, Signal::InverseDepth, Signal::ObjectNormal, Signal::ObjectId, Signal::Motion};
 }
-
-/// Why a tap is refused; several may hold at once.
-enum TapRefusal : uint8_t {
-    kTapKept = 0,
-    kTapOffScreen = 1,
-    kTapOtherObject = 2,
-    kTapDepth = 4,
-    kTapNormal = 8,
-    kTapUnused = 16  ///< its bilinear weight is 0
-};
 
 /// The taps of the previous frame that make up a pixel's history, at most nine, with weights that sum to 1.
 struct ReprojectedTaps {
@@ -52,6 +47,16 @@ struct ReprojectedTaps {
     int x0 = 0, y0 = 0;          ///< of tap (0,0)
 };
 
+/// The same for a row of pixels, as kernels take it: four taps a pixel, those that are refused with weight 0.
+struct ReprojectedRow {
+    std::vector<int32_t> index[4], refusals[4];
+    std::vector<float> weight[4];
+
+    void resize(int width);
+    /// Nothing of 2x2 passed the tests.
+    bool lost(int x) const;
+};
+
 /// Tests one frame's pixels against the previous frame's.
 class Reprojection {
 public:
@@ -60,15 +65,17 @@ public:
     /// 2x2 bilinear taps, each tested for depth, object-space normal and object; a refused tap's weight is spread
     /// uniformly over the others. If none is left, the pixels of 3x3 around the point that pass, in equal parts. The sky has none.
     ReprojectedTaps taps(int x, int y) const;
+    /// The 2x2 taps of all pixels of a row; where they are lost(), widen() may find others.
+    void row(int y, ReprojectedRow& row) const;
+    /// The 3x3 fall-back of a pixel that lost its 2x2 taps: count 0 if it is switched off, or finds nothing.
+    ReprojectedTaps widen(int x, int y) const;
 
 private:
-    struct Point;
-    uint8_t refusal(const Point& point, int x, int y) const;
+    void tapRange(int y, int begin, int end, int32_t* const index[4], float* const weight[4], int32_t* const refusals[4]) const;
 
     const Signals& signals_;
     const SurfaceRecord& previous_;
     ReprojectionSettings settings_;
-    Extent2 extent_;
     float normalCosine_;
 };
 

@@ -29,8 +29,8 @@ inline SignalSet taaSignals() { return {Signal::Motion, Signal::InverseDepth}; }
 
 /// `colour` (RGB, scene-linear) with `previous` (the last frame's `next`, or null) into `next` (compressed, what the next
 /// frame needs) and `out` (scene-linear; may be `colour`). What is not finite counts as 0 and does not reach a
-/// neighbour's history. Returns false if stopped; outputs are then undefined.
+/// neighbour's history. `scratch` is any image. Returns false if stopped; outputs are then undefined.
 bool antialiasTemporally(const Signals& signals, const TaaSettings& settings, const Image& colour, const Image* previous,
-                         Image& next, Image& out, std::stop_token stop);
+                         Image& scratch, Image& next, Image& out, std::stop_token stop);
 
 }  // namespace lumi

@@ -37,9 +37,14 @@ struct TemporalHistory {
     size_t bytes() const;
 };
 
+/// What a row of the temporal filter may be given beside its settings: how much of the history to give up, 0 (none) to 1
+/// (all), one plane a component; none, or as many as components.
+using HistoryLoss = std::vector<const Image*>;
+
 /// Integrates `samples` (RGB, finite, one a component) with `previous` (null: no history) into `next`.
-/// `verdict`, if given, gets verdictValue() of each pixel. Returns false if stopped; `next` is then undefined.
+/// `verdict`, if given, gets verdictValue() of each pixel. With `loss` lambda the weight of the new sample is
+/// alpha + (1 - alpha) lambda, and the history's length shrinks by the largest lambda of the components. Returns false if stopped; `next` is then undefined.
 bool filterTemporally(const Signals& signals, const TemporalSettings& settings, const std::vector<const Image*>& samples,
-                      const TemporalHistory* previous, TemporalHistory& next, Image* verdict, std::stop_token stop);
+                      const TemporalHistory* previous, TemporalHistory& next, Image* verdict, std::stop_token stop, const HistoryLoss& loss = {});
 
 }  // namespace lumi

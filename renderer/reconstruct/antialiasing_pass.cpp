@@ -21,7 +21,7 @@ bool AntialiasingPass::run(const FrameContext& context, Image& image) {
         return true;
     }
     const auto measured = context.timer.measure("antialiasing");
-    return antialiasTemporally(context.signals, settings_, image, step.previous, step.next, image, context.stop);
+    return antialiasTemporally(context.signals, settings_, image, step.previous, scratch_, step.next, image, context.stop);
 }
 
 }  // namespace lumi

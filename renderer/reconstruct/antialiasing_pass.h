@@ -17,13 +17,14 @@ public:
     bool run(const FrameContext& context, Image& image);
     void commit() { history_.commit(); }
     size_t byteCount() const {
-        return history_.byteCount([](const Image& image) { return image.bytes(); });
+        return scratch_.bytes() + history_.byteCount([](const Image& image) { return image.bytes(); });
     }
 
 private:
     bool enabled_;
     TaaSettings settings_;
     FrameHistory<Image> history_;
+    Image scratch_;
 };
 
 }  // namespace lumi

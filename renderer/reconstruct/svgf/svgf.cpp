@@ -1,26 +1,15 @@
 #include "reconstruct/svgf/svgf.h"
 
 #include <algorithm>
-#include <cassert>
+#include <limits>
+
+#include "reconstruct/svgf/svgf_taps.h"
 
 namespace lumi {
 
-SvgfModule::SvgfModule() : taps_(kMaxLevels) {}
+SvgfModule::SvgfModule() : ScreenFilter(svgfTaps(kMaxLevels), true) {}
 
-SignalSet SvgfModule::reads() const {
-    return demodulationSignals() | reprojectionSignals() | surfaceGuideSignals() | antialiasing_.reads();
-}
-
-void SvgfModule::resize(Extent2 extent) {
-    extent_ = extent;
-    forget();
-}
-
-void SvgfModule::forget() {
-    history_.clear();
-    antialiasing_.forget();
-    taps_.clear();
-}
+SignalSet SvgfModule::reads() const { return commonSignals() | reprojectionSignals() | surfaceGuideSignals(); }
 
 AtrousSettings SvgfModule::atrousSettings() const {
     AtrousSettings settings = parameters_.atrous;
@@ -28,49 +17,38 @@ AtrousSettings SvgfModule::atrousSettings() const {
     return settings;
 }
 
-RunResult SvgfModule::run(const FrameContext& context, Image& out) {
-    assert(context.signals.extent() == extent_);
-    if (context.stop.stop_requested()) return RunResult::Stopped;
-    taps_.begin(context.wantedTaps);
-    auto [previous, next] = history_.begin(context.frame, context.changes.cut);
-
-    // 3: demodulate the albedo of directly visible surfaces.
-    {
-        const auto measured = context.timer.measure("demodulation");
-        demodulate(context.signals, frame_);
-        taps_.keepInput(frame_);
-    }
+bool SvgfModule::filter(const FrameContext& context, const Step& step, Image& out) {
     // 4.1 temporal filtering, 4.2 variance estimation, 4.3 wavelet transform.
-    if (!integrate(context, previous, next)) return RunResult::Stopped;
-    if (!estimateVariance(context, next)) return RunResult::Stopped;
-    const Levels* filtered = filterSpatially(context, next);
-    if (!filtered) return RunResult::Stopped;
-    // 3: modulate again, and antialias.
-    {
-        const auto measured = context.timer.measure("modulation");
-        remodulate(frame_, (*filtered)[0].rgb, &(*filtered)[1].rgb, out);
-    }
-    if (!antialiasing_.run(context, out)) return RunResult::Stopped;
-
-    history_.commit();
-    antialiasing_.commit();
-    taps_.commit();
-    return RunResult::Completed;
+    keepInput(captured(), frame());
+    if (!integrate(context, step)) return false;
+    if (!estimateVariance(context, step.next)) return false;
+    const Levels* filtered = filterSpatially(context);
+    if (!filtered) return false;
+    // 3: modulate again.
+    const auto measured = context.timer.measure("modulation");
+    remodulate(frame(), (*filtered)[0].rgb, &(*filtered)[1].rgb, out);
+    handOver(step.next);
+    return true;
 }
 
-bool SvgfModule::integrate(const FrameContext& context, const TemporalHistory* previous, TemporalHistory& next) {
+bool SvgfModule::integrate(const FrameContext& context, const Step& step) {
     const auto measured = context.timer.measure("temporal filter");
-    if (!filterTemporally(context.signals, parameters_.temporal, {&frame_.direct, &frame_.indirect}, previous, next,
-                          taps_.target("reprojection"), context.stop))
+    if (!filterTemporally(context.signals, parameters_.temporal, {&frame().direct, &frame().indirect}, step.previous, step.next,
+                          captured().target("reprojection"), context.stop))
         return false;
-    taps_.keepIntegrated(next);
+    keepIntegrated(captured(), step.next);
     for (size_t c = 0; c < kComponents; ++c) {
-        input_[c].reset(extent_);
-        input_[c].rgb = next.components[c].colour;
-        input_[c].sampleVariance = next.components[c].sampleVariance;
+        input_[c].reset(extent());
+        // The integrated colour moves on; handOver() gives the history what it is to keep.
+        std::swap(input_[c].rgb, step.next.components[c].colour);
         updateLuminance(input_[c]);
     }
     return true;
+}
+
+void SvgfModule::handOver(TemporalHistory& next) {
+    Levels& kept = feedbackLevel() > 0 ? feedback_ : input_;
+    for (size_t c = 0; c < kComponents; ++c) std::swap(kept[c].rgb, next.components[c].colour);
 }
 
 bool SvgfModule::estimateVariance(const FrameContext& context, const TemporalHistory& integrated) {
@@ -88,37 +66,27 @@ bool SvgfModule::estimateVariance(const FrameContext& context, const TemporalHis
     return true;
 }
 
-const SvgfModule::Levels* SvgfModule::filterSpatially(const FrameContext& context, TemporalHistory& next) {
+const SvgfModule::Levels* SvgfModule::filterSpatially(const FrameContext& context) {
     const auto measured = context.timer.measure("wavelet filter");
     const SurfaceGuide guide = surfaceGuide(context.signals);
     const AtrousSettings settings = atrousSettings();
-    taps_.keepEdgeWeights(guide, settings, input_[0], input_[1]);
-    const int feedback = std::min(parameters_.feedbackLevel, parameters_.levels);
+    keepEdgeWeights(captured(), guide, settings, input_[0], input_[1]);
     const Levels* from = &input_;
     for (int level = 0; level <= kMaxLevels; ++level) {
         if (level > 0 && level <= parameters_.levels) {
-            Levels& to = levels_[level % 2];
+            Levels& to = level == feedbackLevel() ? feedback_ : levels_[level % 2];
             if (!atrousLevel(guide, settings, 1 << (level - 1), {&(*from)[0], &(*from)[1]}, {&to[0], &to[1]}, context.stop))
                 return nullptr;
             from = &to;
         }
-        for (size_t c = 0; c < kComponents; ++c) {
-            taps_.keepLevel(level, c == 1, (*from)[c]);
-            if (level == feedback && level > 0) next.components[c].colour = (*from)[c].rgb;
-        }
+        for (size_t c = 0; c < kComponents; ++c) keepLevel(captured(), level, c == 1, (*from)[c]);
     }
     return from;
 }
 
-const Image& SvgfModule::tap(const std::string& name) const {
-    const Image* found = taps_.find(name);
-    return found ? *found : Module::tap(name);
-}
-
 size_t SvgfModule::byteCount() const {
-    size_t sum = taps_.bytes() + antialiasing_.byteCount() + history_.byteCount([](const TemporalHistory& h) { return h.bytes(); });
-    for (const Image* image : {&frame_.emission, &frame_.albedo, &frame_.direct, &frame_.indirect, &frame_.dropped}) sum += image->bytes();
-    for (const Levels* levels : {&input_, &levels_[0], &levels_[1]})
+    size_t sum = ScreenFilter::byteCount();
+    for (const Levels* levels : {&input_, &levels_[0], &levels_[1], &feedback_})
         for (const Illumination& planes : *levels) sum += planes.bytes();
     return sum;
 }

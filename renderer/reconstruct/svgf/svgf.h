@@ -1,9 +1,8 @@
 #pragma once
+#include <algorithm>
+
 #include "filter/atrous.h"
-#include "filter/demodulation.h"
-#include "filter/temporal.h"
-#include "reconstruct/antialiasing_pass.h"
-#include "reconstruct/svgf/svgf_taps.h"
+#include "reconstruct/screen_filter.h"
 
 namespace lumi {
 
@@ -19,20 +18,14 @@ namespace lumi {
 /// - The 3x3 fall-back's weights, which the paper does not state, are equal.
 /// - Fig. 3 feeds colour *and* moments of the first level back, sec. 4.3 colour alone: the moments stay unfiltered.
 /// - Values that are not finite are dropped and counted before anything reads them.
-class SvgfModule : public Module {
+class SvgfModule : public ScreenFilter {
 public:
     enum class DepthWeight { AsPrinted, PlaneDistance };
     enum class VarianceSource { Spatiotemporal, Spatial };
 
     SvgfModule();
     SignalSet reads() const override;
-    Jitter preferredJitter() const override { return Jitter::PerFrame; }
     void describe(ParameterVisitor&) override;
-    void resize(Extent2 extent) override;
-    void forget() override;
-    RunResult run(const FrameContext&, Image& out) override;
-    std::span<const Tap> taps() const override { return taps_.declared(); }
-    const Image& tap(const std::string& name) const override;
     size_t byteCount() const override;
 
     static constexpr int kComponents = 2;  ///< direct, indirect
@@ -51,18 +44,17 @@ private:
     using Levels = std::array<Illumination, kComponents>;
 
     AtrousSettings atrousSettings() const;
-    bool integrate(const FrameContext&, const TemporalHistory* previous, TemporalHistory& next);
+    bool filter(const FrameContext&, const Step&, Image& out) override;
+    bool integrate(const FrameContext&, const Step&);
+    void handOver(TemporalHistory& next);
     bool estimateVariance(const FrameContext&, const TemporalHistory& integrated);
-    const Levels* filterSpatially(const FrameContext&, TemporalHistory& next);
+    const Levels* filterSpatially(const FrameContext&);
+    int feedbackLevel() const { return std::min(parameters_.feedbackLevel, parameters_.levels); }
 
-    Extent2 extent_;
     Parameters parameters_;
-    AntialiasingPass antialiasing_{true};
-    FrameHistory<TemporalHistory> history_;
-    DemodulatedFrame frame_;
     Levels input_;          ///< of the first level: integrated colour and its variance
     Levels levels_[2];      ///< ping and pong
-    SvgfTaps taps_;
+    Levels feedback_;       ///< of the level whose output is the next frame's colour history
 };
 
 }  // namespace lumi

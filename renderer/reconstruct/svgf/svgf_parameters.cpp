@@ -41,7 +41,7 @@ void SvgfModule::describe(ParameterVisitor& v) {
               .help = "sigma_l, in standard deviations of a sample's luminance (eq. 5)"});
     v.toggle("variance-prefilter", parameters_.atrous.variancePrefilter,
              {.label = "Variance prefilter", .help = "Blur the variance by a 3x3 Gaussian before it steers the filter (eq. 5, fig. 5)"});
-    antialiasing_.describe(v);
+    describeAntialiasing(v);
 }
 
 }  // namespace lumi

@@ -2,28 +2,25 @@
 
 #include "base/parallel.h"
 #include "filter/edge_weights.h"
+#include "reconstruct/screen_filter.h"
 
 namespace lumi {
 namespace {
 
 constexpr const char* kRadiance = "W/(m^2 sr)";
 
-std::vector<Tap> declare(int maxLevels) {
-    std::vector<Tap> taps{
+}  // namespace
+
+std::vector<Tap> svgfTaps(int maxLevels) {
+    std::vector<Tap> taps = temporalTaps();
+    const Tap fixed[] = {
         {.name = "demodulatedDirect", .channels = "RGB", .colourMap = "none", .help = "Direct illumination of this frame, divided by the albedo"},
         {.name = "demodulatedIndirect", .channels = "RGB", .colourMap = "none", .help = "Indirect illumination of this frame, divided by the albedo"},
         {.name = "demodulationAlbedo", .channels = "RGB", .colourMap = "none", .help = "What illumination is divided by: the lobes' albedos together"},
-        {.name = "reprojection",
-         .channels = "Y",
-         .rangeHigh = 19,
-         .colourMap = "turbo",
-         .help = "Verdict of the history's taps: 0 sky, 1 all kept, 2 some refused, 3 found by the 3x3 fall-back, 4 and "
-                 "above lost, plus 1 off screen, 2 another object, 4 depth, 8 normal"},
-        {.name = "historyLength", .channels = "Y", .unit = "frames", .rangeHigh = 64, .help = "Frames that make up a pixel's history"},
-        {.name = "dropped", .channels = "Y", .colourMap = "magma", .help = "1 where a value of the input was NaN or infinite and was dropped"},
         {.name = "depthWeight", .channels = "Y", .colourMap = "gray", .help = "w_z (eq. 3), mean of the eight neighbours at the first level"},
         {.name = "normalWeight", .channels = "Y", .colourMap = "gray", .help = "w_n (eq. 4), mean of the eight neighbours at the first level"},
     };
+    taps.insert(taps.end(), std::begin(fixed), std::end(fixed));
     for (const char* component : {"direct", "indirect"}) {
         const std::string name = component;
         taps.push_back({.name = name + "LuminanceWeight", .channels = "Y", .colourMap = "gray", .help = "w_l (eq. 5), mean of the eight neighbours at the first level"});
@@ -47,40 +44,35 @@ std::vector<Tap> declare(int maxLevels) {
     return taps;
 }
 
-}  // namespace
-
-SvgfTaps::SvgfTaps(int maxLevels) : CapturedTaps(declare(maxLevels)) {}
-
-void SvgfTaps::keepInput(const DemodulatedFrame& frame) {
-    keep("demodulatedDirect", frame.direct);
-    keep("demodulatedIndirect", frame.indirect);
-    keep("demodulationAlbedo", frame.albedo);
-    keep("dropped", frame.dropped);
+void keepInput(CapturedTaps& taps, const DemodulatedFrame& frame) {
+    taps.keep("demodulatedDirect", frame.direct);
+    taps.keep("demodulatedIndirect", frame.indirect);
+    taps.keep("demodulationAlbedo", frame.albedo);
 }
 
-void SvgfTaps::keepIntegrated(const TemporalHistory& integrated) {
-    keep("historyLength", integrated.length);
+void keepIntegrated(CapturedTaps& taps, const TemporalHistory& integrated) {
+    taps.keep("historyLength", integrated.length);
     for (size_t c = 0; c < integrated.components.size(); ++c) {
         const TemporalComponent& component = integrated.components[c];
         const std::string name = c == 0 ? "direct" : "indirect";
-        keep(name + "FirstMoment", component.mean);
-        if (Image* second = target(name + "SecondMoment")) {
+        taps.keep(name + "FirstMoment", component.mean);
+        if (Image* second = taps.target(name + "SecondMoment")) {
             *second = component.sampleVariance;
             for (size_t i = 0; i < second->size(); ++i) second->data()[i] += component.mean.data()[i] * component.mean.data()[i];
         }
     }
 }
 
-void SvgfTaps::keepLevel(int level, bool indirect, const Illumination& planes) {
+void keepLevel(CapturedTaps& taps, int level, bool indirect, const Illumination& planes) {
     const std::string name = indirect ? "indirect" : "direct", number = std::to_string(level);
-    keep(name + "Level" + number, planes.rgb);
-    keep(name + "Variance" + number, planes.sampleVariance);
+    taps.keep(name + "Level" + number, planes.rgb);
+    taps.keep(name + "Variance" + number, planes.sampleVariance);
 }
 
-void SvgfTaps::keepEdgeWeights(const SurfaceGuide& guide, const AtrousSettings& settings, const Illumination& direct,
-                               const Illumination& indirect) {
-    Image* const targets[4] = {target("depthWeight"), target("normalWeight"), target("directLuminanceWeight"),
-                               target("indirectLuminanceWeight")};
+void keepEdgeWeights(CapturedTaps& taps, const SurfaceGuide& guide, const AtrousSettings& settings,
+                     const Illumination& direct, const Illumination& indirect) {
+    Image* const targets[4] = {taps.target("depthWeight"), taps.target("normalWeight"), taps.target("directLuminanceWeight"),
+                               taps.target("indirectLuminanceWeight")};
     if (!targets[0] && !targets[1] && !targets[2] && !targets[3]) return;
     for (Image* image : targets)
         if (image) image->reset({guide.width, guide.height}, 1);

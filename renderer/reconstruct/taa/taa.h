@@ -20,6 +20,7 @@ private:
     Extent2 extent_;
     TaaSettings settings_;
     FrameHistory<Image> history_;
+    Image scratch_;
 };
 
 }  // namespace lumi

@@ -1,8 +1,5 @@
 #pragma once
-#include "filter/demodulation.h"
-#include "filter/temporal.h"
-#include "reconstruct/antialiasing_pass.h"
-#include "reconstruct/captured_taps.h"
+#include "reconstruct/screen_filter.h"
 
 namespace lumi {
 
@@ -10,26 +7,18 @@ namespace lumi {
 /// space. Direct and indirect light are integrated together, demodulated.
 ///
 /// Differs from the paper: nowhere beyond filter/temporal.h.
-class TemporalModule : public Module {
+class TemporalModule : public ScreenFilter {
 public:
     TemporalModule();
-    SignalSet reads() const override;
-    Jitter preferredJitter() const override { return Jitter::PerFrame; }
+    SignalSet reads() const override { return commonSignals() | reprojectionSignals(); }
     void describe(ParameterVisitor&) override;
-    void resize(Extent2 extent) override;
-    void forget() override;
-    RunResult run(const FrameContext&, Image& out) override;
-    std::span<const Tap> taps() const override { return taps_.declared(); }
-    const Image& tap(const std::string& name) const override;
-    size_t byteCount() const override;
+    size_t byteCount() const override { return ScreenFilter::byteCount() + sum_.bytes(); }
 
 private:
-    Extent2 extent_;
+    bool filter(const FrameContext&, const Step&, Image& out) override;
+
     TemporalSettings settings_;
-    AntialiasingPass antialiasing_{false};
-    FrameHistory<TemporalHistory> history_;
-    DemodulatedFrame frame_;
-    CapturedTaps taps_;
+    Image sum_;
 };
 
 }  // namespace lumi

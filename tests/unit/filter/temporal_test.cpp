@@ -171,16 +171,16 @@ TEST(FrameHistory, IsATransaction) {
 // A still, constant picture passes; a history outside the neighbourhood's colours is clipped to them.
 TEST(Taa, PassesWhatIsStillAndClipsWhatIsStale) {
     const Signals signals = wall();
-    Image colour(kExtent, 3), next, out;
+    Image colour(kExtent, 3), scratch, next, out;
     colour.fill(0.7f);
     Image stale(kExtent, 3);
     stale.fill(0);
     for (int64_t i = 0; i < kExtent.area(); ++i) stale.data()[i] = 0.9f;  // compressed luma of radiance 9
-    ASSERT_TRUE(antialiasTemporally(signals, {}, colour, &stale, next, out, {}));
+    ASSERT_TRUE(antialiasTemporally(signals, {}, colour, &stale, scratch, next, out, {}));
     EXPECT_NEAR(out.at(1, 9, 9), 0.7f, 1e-5);
     TaaSettings unclipped;
     unclipped.clip = false;
-    ASSERT_TRUE(antialiasTemporally(signals, unclipped, colour, &stale, next, out, {}));
+    ASSERT_TRUE(antialiasTemporally(signals, unclipped, colour, &stale, scratch, next, out, {}));
     EXPECT_GT(out.at(1, 9, 9), 3);
 }
 
@@ -188,11 +188,11 @@ TEST(Taa, PassesWhatIsStillAndClipsWhatIsStale) {
 TEST(Taa, HistoryIsReadBetweenPixels) {
     for (const TaaSettings::History filter : {TaaSettings::History::Bilinear, TaaSettings::History::CatmullRom}) {
         const Signals signals = wall({0.5f, 0});
-        Image colour(kExtent, 3), history(kExtent, 3), next, out;
+        Image colour(kExtent, 3), history(kExtent, 3), scratch, next, out;
         for (int64_t i = 0; i < kExtent.area(); ++i)
             history.data()[i] = 0.01f * static_cast<float>(i % kExtent.width);
         const TaaSettings settings{.alpha = 0.01f, .clip = false, .history = filter};
-        ASSERT_TRUE(antialiasTemporally(signals, settings, colour, &history, next, out, {}));
+        ASSERT_TRUE(antialiasTemporally(signals, settings, colour, &history, scratch, next, out, {}));
         EXPECT_NEAR(next.at(0, 10, 8), 0.99f * 0.105f, 1e-5);
     }
 }

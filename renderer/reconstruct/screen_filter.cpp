@@ -1,0 +1,91 @@
+#include "reconstruct/screen_filter.h"
+
+#include <cassert>
+
+namespace lumi {
+namespace {
+
+std::vector<Tap> withDropped(std::vector<Tap> taps) {
+    taps.push_back({.name = "dropped",
+                    .channels = "Y",
+                    .colourMap = "magma",
+                    .help = "1 where a value of the input was NaN or infinite and was dropped"});
+    return taps;
+}
+
+}  // namespace
+
+ScreenFilter::ScreenFilter(std::vector<Tap> taps, bool antialiased)
+    : antialiasing_(antialiased), taps_(withDropped(std::move(taps))) {}
+
+void ScreenFilter::resize(Extent2 extent) {
+    extent_ = extent;
+    forget();
+}
+
+void ScreenFilter::forget() {
+    history_.clear();
+    antialiasing_.forget();
+    taps_.clear();
+}
+
+RunResult ScreenFilter::run(const FrameContext& context, Image& out) {
+    assert(context.signals.extent() == extent_);
+    if (context.stop.stop_requested()) return RunResult::Stopped;
+    taps_.begin(context.wantedTaps);
+    {
+        const auto measured = context.timer.measure("demodulation");
+        demodulate(context.signals, frame_);
+        taps_.keep("dropped", frame_.dropped);
+    }
+    if (!filter(context, history_.begin(context.frame, context.changes.cut), out)) return RunResult::Stopped;
+    if (!antialiasing_.run(context, out)) return RunResult::Stopped;
+    history_.commit();
+    antialiasing_.commit();
+    taps_.commit();
+    commit();
+    return RunResult::Completed;
+}
+
+const Image& ScreenFilter::tap(const std::string& name) const {
+    const Image* found = taps_.find(name);
+    return found ? *found : Module::tap(name);
+}
+
+size_t ScreenFilter::byteCount() const {
+    return taps_.bytes() + antialiasing_.byteCount() + frame_.bytes() +
+           history_.byteCount([](const TemporalHistory& h) { return h.bytes(); });
+}
+
+std::vector<Tap> temporalTaps() {
+    return {{.name = "reprojection",
+             .channels = "Y",
+             .rangeHigh = 19,
+             .colourMap = "turbo",
+             .help = "Verdict of the history's taps: 0 sky, 1 all kept, 2 some refused, 3 found by the 3x3 fall-back, 4 and "
+                     "above lost, plus 1 off screen, 2 another object, 4 depth, 8 normal"},
+            {.name = "historyLength", .channels = "Y", .unit = "frames", .rangeHigh = 64, .help = "Frames that make up a pixel's history"}};
+}
+
+void AccumulatedInput::describe(ParameterVisitor& v) {
+    v.toggle("temporal", enabled_,
+             {.label = "Temporal accumulation", .help = "Integrate over time before filtering, as SVGF does ([Schied17, sec. 5.1])"});
+    v.when(enabled_, [&] { settings_.describe(v, false); });
+}
+
+const Image* AccumulatedInput::integrate(const FrameContext& context, const DemodulatedFrame& frame,
+                                         const TemporalHistory* previous, TemporalHistory& next, CapturedTaps& taps) {
+    const auto measured = context.timer.measure("temporal filter");
+    frame.addComponents(sum_);
+    if (!enabled_) {
+        next = {};  // a later frame starts its history anew
+        for (const char* tap : {"reprojection", "historyLength"})
+            if (Image* empty = taps.target(tap)) empty->reset(frame.direct.extent(), 1);
+        return &sum_;
+    }
+    if (!filterTemporally(context.signals, settings_, {&sum_}, previous, next, taps.target("reprojection"), context.stop)) return nullptr;
+    taps.keep("historyLength", next.length);
+    return &next.components[0].colour;
+}
+
+}  // namespace lumi

@@ -1,0 +1,71 @@
+#pragma once
+#include "filter/demodulation.h"
+#include "filter/temporal.h"
+#include "reconstruct/antialiasing_pass.h"
+#include "reconstruct/captured_taps.h"
+
+namespace lumi {
+
+/// A method that filters a frame's lighting in screen space, with the history of the frame before: demodulates the
+/// lighting, lets filter() make an image of it, antialiases that. It owns what such methods have in common, and keeps the
+/// transaction that Module asks for: history, taps and antialiasing advance together, or not at all.
+class ScreenFilter : public Module {
+public:
+    void resize(Extent2 extent) final;
+    void forget() override;
+    RunResult run(const FrameContext& context, Image& out) final;
+    std::span<const Tap> taps() const final { return taps_.declared(); }
+    const Image& tap(const std::string& name) const final;
+    size_t byteCount() const override;
+
+protected:
+    using Step = FrameHistory<TemporalHistory>::Step;
+
+    /// `taps`: the method's own; `dropped` is every method's. `antialiased`: the default of the parameter `taa`.
+    ScreenFilter(std::vector<Tap> taps, bool antialiased);
+
+    /// From frame() to the scene-linear image. Writes the whole of step.next, or leaves it empty if the method keeps no
+    /// history. Returns false if stopped.
+    virtual bool filter(const FrameContext& context, const Step& step, Image& out) = 0;
+    /// The run is complete: a method with history of its own commits it.
+    virtual void commit() {}
+
+    /// What run() reads beside what filter() does.
+    SignalSet commonSignals() const { return demodulationSignals() | antialiasing_.reads(); }
+    /// The parameters of the antialiasing pass; the last of a method.
+    void describeAntialiasing(ParameterVisitor& v) { antialiasing_.describe(v); }
+
+    Extent2 extent() const { return extent_; }
+    DemodulatedFrame& frame() { return frame_; }
+    CapturedTaps& captured() { return taps_; }
+
+private:
+    Extent2 extent_;
+    DemodulatedFrame frame_;
+    FrameHistory<TemporalHistory> history_;
+    AntialiasingPass antialiasing_;
+    CapturedTaps taps_;
+};
+
+/// The taps of filterTemporally(): `reprojection`, its verdict, and `historyLength`.
+std::vector<Tap> temporalTaps();
+
+/// Temporal accumulation before another filter, as [Schied17, sec. 5.1] augments the methods it compares with: direct and
+/// indirect light together, and the parameter `temporal` that switches it off.
+class AccumulatedInput {
+public:
+    SignalSet reads() const { return enabled_ ? reprojectionSignals() : SignalSet{}; }
+    void describe(ParameterVisitor& v);
+    bool enabled() const { return enabled_; }
+    /// The light of `frame`, integrated if that is switched on; `next` is left empty if not. Null if stopped.
+    const Image* integrate(const FrameContext& context, const DemodulatedFrame& frame, const TemporalHistory* previous,
+                           TemporalHistory& next, CapturedTaps& taps);
+    size_t byteCount() const { return sum_.bytes(); }
+
+private:
+    bool enabled_ = true;
+    TemporalSettings settings_;
+    Image sum_;
+};
+
+}  // namespace lumi
