@@ -48,10 +48,10 @@ int extent(const float* row, int width, int x, int step, bool rising) {
 
 }  // namespace
 
-double cpbd(ConstFloatPlane gray, const Image* counted, Image* map) {
+double cpbd(ConstFloatPlane gray, const Image* counted, Image* map, int64_t* edgeCount) {
     const int w = gray.width, h = gray.height;
     if (map) map->reset({w, h}, 1);
-    if (w < 3 || h < 3) return 0;
+    if (w < 3 || h < 3) return std::nan("");
     const std::vector<uint8_t> edges = verticalEdges(gray);
     int64_t total = 0, sharp = 0;
     for (int by = 0; by < h; by += kBlock)
@@ -79,6 +79,7 @@ double cpbd(ConstFloatPlane gray, const Image* counted, Image* map) {
                     sharp += blurSeen <= kDetectable;
                 }
         }
+    if (edgeCount) *edgeCount = total;
     return total > 0 ? static_cast<double>(sharp) / static_cast<double>(total) : 0;
 }
 
@@ -95,8 +96,12 @@ Measurement measureCpbd(const ImagePair& pair, bool wantMap) {
     const Image image = gray(pair.image), reference = gray(pair.reference);
     Measurement result;
     const Image* counted = pair.valid.empty() ? nullptr : &pair.valid;
-    result.value = cpbd(image.plane(0), counted, wantMap ? &result.map : nullptr);
-    result.details = {{"reference_cpbd", cpbd(reference.plane(0), counted)}};
+    int64_t edges = 0;
+    result.value = cpbd(image.plane(0), counted, wantMap ? &result.map : nullptr, &edges);
+    result.details = {{"edges", static_cast<double>(edges)}, {"reference_cpbd", cpbd(reference.plane(0), counted)}};
+    result.reason = pair.whyNothingCounts();
+    if (result.reason.empty() && std::isnan(result.value)) result.reason = "the image is smaller than 3x3 pixels";
+    if (!result.reason.empty()) result.value = std::nan("");
     return result;
 }
 

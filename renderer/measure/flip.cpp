@@ -11,24 +11,19 @@ namespace {
 Image displayed(const Image& linear, float exposureEv) {
     Image out(linear.extent(), 3);
     const float factor = std::exp2(exposureEv);
-    for (size_t i = 0; i < linear.size(); ++i)
-        out.data()[i] = glm::clamp(linear.data()[i] * factor, 0.0f, 1.0f);
+    parallelRanges(static_cast<int64_t>(linear.size()), 1 << 15, [&](int64_t begin, int64_t end) {
+        const float* in = linear.data();
+        for (int64_t i = begin; i < end; ++i) out.data()[i] = glm::clamp(in[i] * factor, 0.0f, 1.0f);
+    });
     return out;
 }
 
 }  // namespace
 
 Measurement measureFlip(const ImagePair& pair, bool wantMap) {
-    Measurement result;
     const FlipFeatures test = flipFeatures(displayed(pair.image, pair.exposureEv));
     const FlipFeatures reference = flipFeatures(displayed(pair.reference, pair.exposureEv));
-    Image error = flipError(test, reference);
-    result.value = meanOverMask(error, pair);
-    if (wantMap) {
-        clearUncounted(error, pair);
-        result.map = std::move(error);
-    }
-    return result;
+    return meanMeasurement(flipError(test, reference), pair, wantMap);
 }
 
 }  // namespace lumi

@@ -61,31 +61,25 @@ FlipExposures flipExposures(const Image& reference) {
         luminances.erase(std::remove(luminances.begin(), luminances.end(), 0.0f), luminances.end());
         median = medianOf(luminances);
     }
-    FlipExposures range;
-    range.start = std::log2(brightInput() / brightest);
-    range.stop = std::log2(brightInput() / median);
-    range.count = std::max(2, static_cast<int>(std::ceil(range.stop - range.start)));
-    return range;
+    return FlipExposures::over(std::log2(brightInput() / brightest), std::log2(brightInput() / median));
 }
 
 Measurement measureHdrFlip(const ImagePair& pair, bool wantMap) {
-    const FlipExposures range = pair.flipExposures.value_or(flipExposures(pair.reference));
+    const FlipExposures range = pair.settings.flipExposures ? *pair.settings.flipExposures : flipExposures(pair.reference);
     Image worst(pair.image.extent(), 1);
     for (int i = 0; i < range.count; ++i) {
         const auto exposure = static_cast<float>(range.start + (range.stop - range.start) * i / std::max(range.count - 1, 1));
         const Image error = flipError(flipFeatures(toneMapped(pair.image, exposure)),
                                       flipFeatures(toneMapped(pair.reference, exposure)));
-        for (size_t p = 0; p < worst.size(); ++p) worst.data()[p] = std::max(worst.data()[p], error.data()[p]);
+        parallelRanges(static_cast<int64_t>(worst.size()), 1 << 15, [&](int64_t begin, int64_t end) {
+            float* out = worst.data();
+            for (int64_t p = begin; p < end; ++p) out[p] = std::max(out[p], error.data()[p]);
+        });
     }
-    Measurement result;
-    result.value = meanOverMask(worst, pair);
+    Measurement result = meanMeasurement(std::move(worst), pair, wantMap);
     result.details = {{"start_exposure", range.start},
                       {"stop_exposure", range.stop},
                       {"exposures", static_cast<double>(range.count)}};
-    if (wantMap) {
-        clearUncounted(worst, pair);
-        result.map = std::move(worst);
-    }
     return result;
 }
 

@@ -141,16 +141,54 @@ void toneRational(const float* in, float exposureFactor, const float c[6], float
     }
 }
 
-void ssimRow(const float* meanA, const float* meanB, const float* squareA, const float* squareB, const float* product,
-             float* ssim, float* contrast, int width) {
+/// 11 symmetric taps for a chunk of columns: tap k reads at(k), weights fold around the middle one.
+template <class At>
+inline void foldedTaps(const At& at, const float* weights, float* sums) {
+    const float* middle = at(5);
+    for (int i = 0; i < kSsimChunk; ++i) sums[i] = weights[5] * middle[i];
+    for (int k = 0; k < 5; ++k) {
+        const float weight = weights[k];
+        const float *low = at(k), *high = at(10 - k);
+        for (int i = 0; i < kSsimChunk; ++i) sums[i] += weight * (low[i] + high[i]);
+    }
+}
+
+void ssimSmooth(const float* a, const float* b, const float* weights, float* const out[4], int width) {
+    float quantities[4][kSsimTile + 10];
+    for (int x = 0; x < width + 10; ++x) {
+        const float sum = a[x] + b[x] - 1.0f, difference = a[x] - b[x];
+        quantities[0][x] = sum;
+        quantities[1][x] = difference;
+        quantities[2][x] = sum * sum;
+        quantities[3][x] = difference * difference;
+    }
+    for (int q = 0; q < 4; ++q)
+        for (int x = 0; x < width; x += kSsimChunk) {
+            float sums[kSsimChunk];
+            const float* first = quantities[q] + x;
+            foldedTaps([first](int k) { return first + k; }, weights, sums);
+            float* smooth = out[q] + x;
+            for (int i = 0; i < kSsimChunk; ++i) smooth[i] = sums[i];
+        }
+}
+
+/// With s = a + b - 1 (about 0, for the sake of the variances' last bits) and d = a - b: mean(a) mean(b) =
+/// ((ms + 1)^2 - md^2) / 4, mean(a)^2 + mean(b)^2 = ((ms + 1)^2 + md^2) / 2, and the same without the 1 for covariance and
+/// the sum of variances. Equal images have d = 0, and give 1 to the last bit.
+void ssimRow(const float* const* rows, const float* weights, float* ssim, float* contrast, int width) {
     constexpr float c1 = 0.01f * 0.01f, c2 = 0.03f * 0.03f;
-    for (int x = 0; x < width; ++x) {
-        const float ab = meanA[x] * meanB[x], aa = meanA[x] * meanA[x], bb = meanB[x] * meanB[x];
-        const float covariance = product[x] - ab;
-        const float variances = (squareA[x] - aa) + (squareB[x] - bb);
-        const float structure = (2 * covariance + c2) / (variances + c2);
-        contrast[x] = structure;
-        ssim[x] = (2 * ab + c1) / (aa + bb + c1) * structure;
+    for (int x = 0; x < width; x += kSsimChunk) {
+        float means[4][kSsimChunk];
+        for (int q = 0; q < 4; ++q)
+            foldedTaps([rows, q, x](int k) { return rows[4 * k + q] + x; }, weights, means[q]);
+        for (int i = 0; i < kSsimChunk; ++i) {
+            const float ss = means[0][i] * means[0][i], dd = means[1][i] * means[1][i];
+            const float sumVariance = means[2][i] - ss, differenceVariance = means[3][i] - dd;
+            const float structure = (0.5f * (sumVariance - differenceVariance) + c2) / (0.5f * (sumVariance + differenceVariance) + c2);
+            const float mean = means[0][i] + 1.0f, both = mean * mean;
+            contrast[x + i] = structure;
+            ssim[x + i] = (0.5f * (both - dd) + c1) / (0.5f * (both + dd) + c1) * structure;
+        }
     }
 }
 
@@ -158,7 +196,7 @@ void ssimRow(const float* meanA, const float* meanB, const float* squareA, const
 
 const MeasureKernels& measureTable() {
     static const MeasureKernels table{convolveRow, convolveColumn, flipColour,   flipCombine, yCxCzFromLinear,
-                                      encodeLdr,   decodeSrgb,     toneRational, ssimRow};
+                                      encodeLdr,   decodeSrgb,     toneRational, ssimSmooth,  ssimRow};
     return table;
 }
 

@@ -3,6 +3,9 @@
 
 namespace lumi {
 
+constexpr int kSsimChunk = 32;  ///< columns that SSIM's kernels take at a time
+constexpr int kSsimTile = 256;  ///< most columns of a row: what 11 rows of it need stays near the core
+
 /// One row of a separable convolution: out[x] = sum over k of weights[k] * in[x + k], k in [0, taps).
 /// `in` holds width + taps - 1 values, its borders already extended.
 struct MeasureKernels {
@@ -25,9 +28,13 @@ struct MeasureKernels {
     void (*decodeSrgb)(const float* in, float* out, int width);
     /// FLIP's tone mappers for HDR: rational a x^2 + b x + c over d x^2 + e x + f, clamped to [0,1].
     void (*toneRational)(const float* in, float exposureFactor, const float coefficients[6], float* out, int width);
-    /// SSIM of one row from local means and second moments [Wang 2004, eq. 13]; also the contrast-structure part.
-    void (*ssimRow)(const float* meanA, const float* meanB, const float* squareA, const float* squareB,
-                    const float* product, float* ssim, float* contrast, int width);
+    /// SSIM [Wang 2004], first pass: a + b - 1 and a - b of two rows and their squares, each smoothed along the
+    /// row by the 11 symmetric `weights` (6 values, the middle one last): out[x] belongs to in[x + 5]. Rows hold
+    /// width + 10 values, width a multiple of kSsimChunk and at most kSsimTile.
+    void (*ssimSmooth)(const float* a, const float* b, const float* weights, float* const out[4], int width);
+    /// Second pass: the four quantities of 11 rows, smoothed down the columns, to SSIM and its contrast-structure part
+    /// (eq. 13). rows[4 * k + q] is quantity q of row k.
+    void (*ssimRow)(const float* const* rows, const float* weights, float* ssim, float* contrast, int width);
 };
 
 LUMI_KERNELS(MeasureKernels, measure)

@@ -59,9 +59,13 @@ void filterChannel(ConstFloatPlane in, const Sensitivity& sensitivity, FloatPlan
     for (size_t i = 0; i < parts.size(); ++i) {
         convolveClamped(in, parts[i].weights, parts[i].weights, scratch.plane(0));
         const auto share = static_cast<float>(parts[i].share);
-        for (int y = 0; y < in.height; ++y)
-            for (int x = 0; x < in.width; ++x)
-                out.at(x, y) = (i == 0 ? 0.0f : out.at(x, y)) + share * scratch.at(0, x, y);
+        parallelRanges(in.height, 16, [&](int64_t begin, int64_t end) {
+            for (int y = static_cast<int>(begin); y < end; ++y) {
+                const float* smooth = scratch.plane(0).row(y);
+                float* sum = out.row(y);
+                for (int x = 0; x < in.width; ++x) sum[x] = (i == 0 ? 0.0f : sum[x]) + share * smooth[x];
+            }
+        });
     }
 }
 
@@ -128,7 +132,9 @@ FlipFeatures flipFeatures(const Image& linear) {
 
     // Features live on the achromatic channel scaled to [0,1]; the offset matters at no border since edges are extended.
     Image achromatic(extent, 1);
-    for (size_t i = 0; i < achromatic.size(); ++i) achromatic.data()[i] = (opponent.data()[i] + 16.0f) / 116.0f;
+    parallelRanges(static_cast<int64_t>(achromatic.size()), 1 << 15, [&](int64_t begin, int64_t end) {
+        for (int64_t i = begin; i < end; ++i) achromatic.data()[i] = (opponent.data()[i] + 16.0f) / 116.0f;
+    });
     const FeatureFilters f = featureFilters();
     const ConstFloatPlane y = std::as_const(achromatic).plane(0);
     convolveClamped(y, f.edge, f.smooth, features.gradients.plane(0));

@@ -1,7 +1,10 @@
 #include "measure/temporal.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
+#include "base/error.h"
 #include "base/parallel.h"
 
 namespace lumi {
@@ -65,7 +68,16 @@ private:
     const Image& previous_;
 };
 
+void checkExtents(const TemporalPair& pair) {
+    const Extent2 extent = pair.image.extent();
+    for (const Image* other : {&pair.previous, pair.motion, pair.depth, pair.previousDepth, pair.mask})
+        if (other && !(other->extent() == extent))
+            throwBadInput({"frames differ in size", "", fmt::format("{}x{}", extent.width, extent.height),
+                           fmt::format("{}x{}", other->width(), other->height())});
+}
+
 Measurement difference(const TemporalPair& pair, bool follows, bool wantMap) {
+    checkExtents(pair);
     const Image now = shownLuminance(pair.image, pair.exposureEv), before = shownLuminance(pair.previous, pair.exposureEv);
     const Follower follower(pair, before);
     Image map(now.extent(), 1);
@@ -88,7 +100,10 @@ Measurement difference(const TemporalPair& pair, bool follows, bool wantMap) {
         sum += row;
     }
     Measurement result;
-    result.value = count > 0 ? sum / static_cast<double>(count) : std::nan("");
+    if (count > 0) result.value = sum / static_cast<double>(count);
+    else result.reason = asked == 0 ? "the mask leaves no pixel"
+                         : broken >= now.extent().area() ? "no pixel is finite in both frames"
+                         : follows ? "no point was seen in the frame before" : "no pixel that counts is finite in both frames";
     result.details.emplace_back("nonfinite_pixels", static_cast<double>(broken));
     if (follows)
         result.details.emplace_back("covered", asked > 0 ? static_cast<double>(count) / static_cast<double>(asked) : 0.0);
@@ -98,60 +113,7 @@ Measurement difference(const TemporalPair& pair, bool follows, bool wantMap) {
 
 }  // namespace
 
-const std::vector<SequenceMetric>& sequenceMetricCatalog() {
-    static const std::vector<SequenceMetric> catalog = {
-        {"temporal", "Temporal error", "Mean absolute difference of the luminances of consecutive tone-mapped frames in [0,1]; for static views."},
-        {"temporal_reprojected", "Reprojected temporal error", "The same after following the reference's motion, over the points that the frame before saw: what moves is no flicker."},
-        {"lag", "Lag", "Frames after a step of the light until the output's response to it, in linear luminance, is 0.9."},
-    };
-    return catalog;
-}
-
 Measurement measureTemporal(const TemporalPair& pair, bool wantMap) { return difference(pair, false, wantMap); }
 Measurement measureReprojectedTemporal(const TemporalPair& pair, bool wantMap) { return difference(pair, true, wantMap); }
-
-LagMeter::LagMeter(const Image& before, const Image& after, const Image* mask)
-    : before_(before.extent(), 1), step_(before.extent(), 1), first_(before.extent(), 1) {
-    first_.fill(-1);
-    for (int y = 0; y < before.height(); ++y)
-        for (int x = 0; x < before.width(); ++x) {
-            if ((mask && !(mask->at(0, x, y) > 0.5f)) || !finite(before, x, y) || !finite(after, x, y)) continue;
-            const float low = luminance(colourAt(before, x, y)), change = luminance(colourAt(after, x, y)) - low;
-            before_.at(0, x, y) = low;
-            step_.at(0, x, y) = change;
-            largest_ = std::max(largest_, std::abs(change));
-            squares_ += static_cast<double>(change) * change;
-        }
-}
-
-void LagMeter::add(const Image& frame) {
-    double sum = 0;
-    const auto number = static_cast<float>(curve_.size());
-    for (int y = 0; y < frame.height(); ++y)
-        for (int x = 0; x < frame.width(); ++x) {
-            const float change = step_.at(0, x, y);
-            // A broken pixel has not moved.
-            if (change == 0 || !finite(frame, x, y)) continue;
-            const float moved = luminance(colourAt(frame, x, y)) - before_.at(0, x, y);
-            sum += static_cast<double>(moved) * change;
-            if (first_.at(0, x, y) < 0 && moved / change >= static_cast<float>(kReached)) first_.at(0, x, y) = number;
-        }
-    curve_.push_back(squares_ > 0 ? sum / squares_ : std::nan(""));
-}
-
-int64_t LagMeter::lag() const {
-    for (size_t i = 0; i < curve_.size(); ++i)
-        if (curve_[i] >= kReached) return static_cast<int64_t>(i);
-    return -1;
-}
-
-Image LagMeter::map() const {
-    Image out(first_.extent(), 1);
-    for (size_t i = 0; i < out.size(); ++i) {
-        if (std::abs(step_.data()[i]) < 0.01f * largest_ || step_.data()[i] == 0) continue;
-        out.data()[i] = first_.data()[i] < 0 ? static_cast<float>(curve_.size()) : first_.data()[i];
-    }
-    return out;
-}
 
 }  // namespace lumi

@@ -22,48 +22,23 @@ struct SequenceMetric {
     const char* id;
     const char* title;
     const char* definition;
+    bool symmetric;      ///< the same if the two frames change places
+    const char* range;   ///< interval of its values
+    const char* source;  ///< as in Metric
 };
-/// temporal, temporal_reprojected, lag.
+/// temporal, temporal_reprojected, lag (measure/lag.h). Of all of them lower is better.
 const std::vector<SequenceMetric>& sequenceMetricCatalog();
 
 /// Mean absolute difference of the luminances of the two tone-mapped frames, pixel by pixel: flicker on a static view.
-/// Detail `nonfinite_pixels`; those count for nothing.
+/// Detail `nonfinite_pixels`; those count for nothing. NaN, with the reason, if no pixel counts.
+/// Throws Error(BadInput) if extents differ.
 Measurement measureTemporal(const TemporalPair& pair, bool wantMap);
 
 /// The same after each pixel of the later frame has followed its motion to where its point was, bilinearly: the movement of
 /// the camera and of objects is no flicker then. Points that were off the image do not count; nor, with both depths, do
 /// those that something hid (a depth that differs by more than 5% from where the point was, at any of the four pixels).
+/// A pixel whose motion is not finite counts for nothing.
 /// Details: `nonfinite_pixels`, and `covered`, the share of pixels that count.
 Measurement measureReprojectedTemporal(const TemporalPair& pair, bool wantMap);
-
-/// How an output follows a step in the light, from the frame of the step on.
-///
-/// Response of a frame: the projection of its difference from `before` on that of `after`, over the luminances of all
-/// pixels that count: 0 is as before the step, 1 has arrived. Noise averages out in it. For an exponential mean with
-/// weight a the response n frames after the step is 1 - (1 - a)^(n + 1).
-class LagMeter {
-public:
-    /// References of before and after the step, linear RGB. `mask` may be null.
-    LagMeter(const Image& before, const Image& after, const Image* mask = nullptr);
-
-    /// The output's next frame; the first is that of the step.
-    void add(const Image& frame);
-    const std::vector<double>& curve() const { return curve_; }
-    /// Frames after that of the step until the response is at least kReached; -1: not within the frames there were.
-    int64_t lag() const;
-    /// The same for each pixel on its own (noise and all); the number of frames where it was not reached, 0 where the step
-    /// changes less than a hundredth of the largest change.
-    Image map() const;
-    /// Does the step change anything? Without that the response is NaN.
-    bool changes() const { return squares_ > 0; }
-
-    static constexpr double kReached = 0.9;
-
-private:
-    Image before_, step_, first_;  ///< luminances; step_ is 0 where nothing counts; frame of arrival, -1: none
-    double squares_ = 0;
-    float largest_ = 0;
-    std::vector<double> curve_;
-};
 
 }  // namespace lumi

@@ -122,12 +122,12 @@ TEST(HdrFlip, ExposuresBelongToTheReferenceWhateverTheImageHolds) {
 
 TEST(HdrFlip, AFixedRangeIsTaken) {
     ImagePair pair{randomImage({32, 32}, 5), randomImage({32, 32}, 6), {}, 0};
-    pair.flipExposures = FlipExposures{-2, 1, 4};
+    pair.settings.flipExposures = FlipExposures{-2, 1, 4};
     pair.prepare();
     const Measurement four = measureHdrFlip(pair, false);
     EXPECT_EQ(four.details[0].second, -2);
     EXPECT_EQ(four.details[2].second, 4);
-    pair.flipExposures = FlipExposures{-2, -2, 1};
+    pair.settings.flipExposures = FlipExposures{-2, -2, 1};
     EXPECT_LE(measureHdrFlip(pair, false).value, four.value) << "the maximum over fewer exposures";
 }
 

@@ -1,6 +1,7 @@
 // Values that others published for given image pairs (see EXPECTED.md beside them).
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
@@ -44,7 +45,7 @@ TEST(Published, HdrFlipOfTheDenoiserPair) {
     EXPECT_EQ(flip.details[2].second, 9);
     EXPECT_NEAR(flip.value, 0.339822, 5e-5);
     ImagePair fixed = pair;
-    fixed.flipExposures = FlipExposures{-3, 3, 5};
+    fixed.settings.flipExposures = FlipExposures{-3, 3, 5};
     EXPECT_NEAR(measureHdrFlip(fixed, false).value, 0.206899, 5e-5);
 }
 
@@ -54,6 +55,34 @@ TEST(Published, PsnrSsimAndFlipOfTheCamera) {
     EXPECT_NEAR(measurePsnr(pair, false).value, 22.409353363576034, 1e-4);
     EXPECT_NEAR(measureSsim(pair, false).value, 0.357959091663361, 1e-3);
     EXPECT_NEAR(measureFlip(pair, false).value, 0.110325, 1e-5);
+}
+
+/// Two gray images of one row.
+ImagePair grayPair(const std::vector<float>& image, const std::vector<float>& reference) {
+    const Extent2 extent{static_cast<int>(image.size()), 1};
+    ImagePair pair{Image(extent, 3), Image(extent, 3), {}, 0};
+    for (int c = 0; c < 3; ++c)
+        for (size_t x = 0; x < image.size(); ++x) {
+            pair.image.at(c, static_cast<int>(x), 0) = image[x];
+            pair.reference.at(c, static_cast<int>(x), 0) = reference[x];
+        }
+    pair.prepare();
+    return pair;
+}
+
+TEST(Published, ErrorsOfShortVectors) {
+    // scikit-learn's manual, mean_squared_error and mean_absolute_error.
+    const ImagePair pair = grayPair({2.5f, 0, 2, 8}, {3, -0.5f, 2, 7});
+    EXPECT_NEAR(measureMse(pair, false).value, 0.375, 1e-6);
+    EXPECT_NEAR(measureMae(pair, false).value, 0.5, 1e-6);
+    // torchmetrics' manual, SymmetricMeanAbsolutePercentageError; ours has 0.01 in the denominator.
+    EXPECT_NEAR(measureSmape(grayPair({0.9f, 15, 1.2e6f}, {1, 10, 1e6f}), false).value, 0.2290, 3e-4);
+}
+
+TEST(Published, RmseOfTheCamera) {
+    REQUIRE_ASSET("psnr_ssim_camera");
+    const ImagePair pair = load("psnr_ssim_camera/camera_noisy.png", "psnr_ssim_camera/camera.png");
+    EXPECT_NEAR(measureRmse(pair, false).value, std::pow(10, -22.409353363576034 / 20), 1e-6);
 }
 
 TEST(Published, SsimAndMsSsimOfTheCheckerboards) {

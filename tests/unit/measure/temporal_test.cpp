@@ -5,6 +5,7 @@
 #include <random>
 
 #include "math/colour.h"
+#include "measure/lag.h"
 #include "measure/temporal.h"
 
 namespace lumi {
@@ -135,7 +136,8 @@ TEST(Lag, AnExponentialMeanFollowsItsFormula) {
         meter.add(output);
         EXPECT_NEAR(meter.curve().back(), 1 - std::pow(0.8, n + 1), 1e-5);
     }
-    EXPECT_EQ(meter.lag(), 10);  // 1 - 0.8^11 = 0.914
+    EXPECT_EQ(meter.lag(3).value, 10);  // 1 - 0.8^11 = 0.914
+    EXPECT_EQ(meter.lag(3).stepFrame, 3);
     const Image map = meter.map();
     EXPECT_EQ(map.at(0, 11, 12), 10);
 }
@@ -152,9 +154,10 @@ TEST(Lag, NoiseAveragesOutAndNothingIsFoundWhereNothingHappens) {
     }
     EXPECT_EQ(meter.curve()[1], 0);
     EXPECT_NEAR(meter.curve()[2], 1, 0.03);
-    EXPECT_EQ(meter.lag(), 2);
+    EXPECT_EQ(meter.lag(0).value, 2);
     EXPECT_FALSE(still.changes());
-    EXPECT_EQ(still.lag(), -1);
+    EXPECT_TRUE(std::isnan(still.lag(0).value));
+    EXPECT_EQ(still.lag(0).reason, "the step changes nothing that counts");
     Image mask(kExtent, 1);
     mask.at(0, 1, 1) = 1;
     LagMeter masked(dark, light, &mask);
