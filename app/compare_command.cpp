@@ -1,66 +1,16 @@
-#include "app/compare_parts.h"
-
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 
+#include "app/compare_parts.h"
 #include "base/error.h"
 #include "frame/display.h"
 #include "image/exr.h"
-#include "image/hdr.h"
 #include "image/png.h"
-#include "measure/metrics.h"
 #include "measure/temporal.h"
 
 namespace lumi {
-namespace {
-
-Image cropped(const Image& image, const std::array<int, 4>& crop, const std::string& where) {
-    const auto [x, y, width, height] = crop;
-    const bool inside = x >= 0 && y >= 0 && width > 0 && height > 0 && x + width <= image.width() &&
-                        y + height <= image.height();
-    if (!inside)
-        throwUsage({"the crop leaves the image", where, fmt::format("a part of {}x{}", image.width(), image.height()),
-                    fmt::format("{},{},{},{}", x, y, width, height)});
-    Image out({width, height}, image.channels());
-    for (int c = 0; c < image.channels(); ++c)
-        for (int row = 0; row < height; ++row)
-            std::copy_n(image.plane(c).row(y + row) + x, width, out.plane(c).row(row));
-    return out;
-}
-
-Image luminanceMask(const Image& rgb) {
-    Image mask(rgb.extent(), 1);
-    for (int y = 0; y < rgb.height(); ++y)
-        for (int x = 0; x < rgb.width(); ++x)
-            mask.at(0, x, y) = luminance(Vec3(rgb.at(0, x, y), rgb.at(1, x, y), rgb.at(2, x, y)));
-    return mask;
-}
-
-}  // namespace
-
-Image croppedAs(const CompareOptions& options, const Image& image) {
-    return options.crop && !image.empty() ? cropped(image, *options.crop, "--crop") : image;
-}
-
-ImagePair loadPair(const CompareOptions& options, const std::filesystem::path& image, const std::filesystem::path& reference) {
-    ImagePair pair;
-    pair.image = loadImage(image);
-    pair.reference = loadImage(reference);
-    if (!options.mask.empty()) pair.mask = luminanceMask(loadImage(options.mask));
-    pair.exposureEv = options.exposureEv;
-    pair.flipExposures = options.flipExposures;
-    if (!(pair.image.extent() == pair.reference.extent())) pair.prepare(image.string());  // throws
-    if (options.crop) {
-        // Exposures belong to the whole reference, whichever part of it is looked at.
-        if (!pair.flipExposures) pair.flipExposures = flipExposures(pair.reference);
-        pair.image = croppedAs(options, pair.image);
-        pair.reference = croppedAs(options, pair.reference);
-        pair.mask = croppedAs(options, pair.mask);
-    }
-    pair.prepare(image.string());
-    return pair;
-}
+using nlohmann::ordered_json;
 
 void writeMap(const std::filesystem::path& folder, const std::string& name, const char* colours, const Image& map) {
     ExrLayers layers;
@@ -83,24 +33,43 @@ MetricResults measureAll(const CompareOptions& options, const std::vector<const 
     return results;
 }
 
-nlohmann::ordered_json jsonOf(const MetricResults& results) {
-    nlohmann::ordered_json values, details = nlohmann::ordered_json::object();
-    for (const auto& [metric, result] : results) {
-        values[metric->id] = result.value;
-        for (const auto& [name, value] : result.details) details[metric->id][name] = value;
-    }
-    return {{"metrics", values}, {"details", details}};
+void addMeasurement(ordered_json& report, const std::string& id, const Measurement& measurement) {
+    report["metrics"][id] = std::isfinite(measurement.value) ? ordered_json(measurement.value) : ordered_json();
+    for (const auto& [name, value] : measurement.details) report["details"][id][name] = std::isfinite(value) ? ordered_json(value) : ordered_json();
+    if (!measurement.reason.empty()) report["no_value"][id] = measurement.reason;
 }
+
+void addCounts(ordered_json& report, const ImagePair& pair) {
+    report["nonfinite_pixels"] = pair.nonFinitePixels;
+    report["nonfinite_image"] = pair.nonFiniteImage;
+    report["nonfinite_reference"] = pair.nonFiniteReference;
+    report["counted_pixels"] = pair.countedPixels;
+}
+
+std::string valueText(double value) { return std::isnan(value) ? "-" : fmt::format("{:.6g}", value); }
 
 namespace {
 
-void printTable(const ImagePair& pair, const MetricResults& results, bool quiet) {
+void printTable(const ComparedPair& compared, const MetricResults& results) {
+    const ImagePair& pair = compared.pair;
     for (const auto& [metric, result] : results) {
-        fmt::print("{:<10} {:<12.6g} {}\n", metric->id, result.value, metric->definition);
-        for (const auto& [name, value] : result.details) fmt::print("{:<10} {} = {:.6g}\n", "", name, value);
+        fmt::print("{:<10} {:<12} {}\n", metric->id, valueText(result.value),
+                   result.reason.empty() ? metric->definition : result.reason);
+        for (const auto& [name, value] : result.details) fmt::print("{:<10} {} = {}\n", "", name, valueText(value));
     }
-    if (pair.nonFinitePixels > 0 && !quiet)
-        fmt::print(stderr, "warning: {} pixels are NaN or infinite; they count in no metric\n", pair.nonFinitePixels);
+    fmt::print("\n{}x{}, {} pixels count; not finite: {} in the image, {} in the reference; exposure {:g} EV ({})\n",
+               pair.image.width(), pair.image.height(), pair.countedPixels, pair.nonFiniteImage, pair.nonFiniteReference,
+               compared.exposure.ev, compared.exposure.from);
+}
+
+void printJson(const ComparedPair& compared, const MetricResults& results) {
+    ordered_json report = {{"width", compared.pair.image.width()}, {"height", compared.pair.image.height()}};
+    addCounts(report, compared.pair);
+    report["exposure"] = compared.exposure.ev;
+    report["exposure_from"] = compared.exposure.from;
+    for (const char* key : {"metrics", "details", "no_value"}) report[key] = ordered_json::object();
+    for (const auto& [metric, result] : results) addMeasurement(report, metric->id, result);
+    fmt::print("{}\n", report.dump(2));
 }
 
 }  // namespace
@@ -117,18 +86,15 @@ int runCompare(const CompareOptions& options) {
     if (wanted.empty())
         for (const Metric& metric : metricCatalog()) wanted.push_back(&metric);
 
-    const ImagePair pair = loadPair(options, options.image, options.reference);
+    const ComparedPair compared = loadPair(options, options.image, options.reference, false);
     if (!options.maps.empty()) std::filesystem::create_directories(options.maps);
-    const MetricResults results = measureAll(options, wanted, pair, "");
-    if (!options.json) {
-        printTable(pair, results, options.quiet);
-        return 0;
-    }
-    nlohmann::ordered_json report = {{"width", pair.image.width()},
-                                     {"height", pair.image.height()},
-                                     {"nonfinite_pixels", pair.nonFinitePixels}};
-    report.update(jsonOf(results));
-    fmt::print("{}\n", report.dump(2));
+    const MetricResults results = measureAll(options, wanted, compared.pair, "");
+    if (options.json) printJson(compared, results);
+    else printTable(compared, results);
+    if (options.quiet) return 0;
+    if (!compared.exposure.warning.empty()) fmt::print(stderr, "warning: {}\n", compared.exposure.warning);
+    if (compared.pair.nonFinitePixels > 0)
+        fmt::print(stderr, "warning: {} pixels are NaN or infinite; they count in no metric\n", compared.pair.nonFinitePixels);
     return 0;
 }
 

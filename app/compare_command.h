@@ -16,8 +16,8 @@ struct CompareOptions {
     std::filesystem::path maps;                ///< folder for error maps; empty: none
     std::optional<std::array<int, 4>> crop;    ///< x, y, width, height
     std::filesystem::path mask;                ///< image whose luminance above 0.5 counts; empty: everything counts
-    float exposureEv = 0;
-    std::optional<FlipExposures> flipExposures;  ///< of HDR-FLIP; else what the reference says
+    std::optional<float> exposureEv;           ///< else what the state in the files says
+    MetricSettings settings;
     std::optional<std::pair<int64_t, int64_t>> frames;  ///< half-open, of patterns; else the files there are
     bool json = false, quiet = false;
 };

@@ -8,10 +8,24 @@
 
 namespace lumi {
 
-/// Two images with what masks and crops leave of them, prepared for measuring.
-ImagePair loadPair(const CompareOptions& options, const std::filesystem::path& image, const std::filesystem::path& reference);
-/// The part of an image that --crop asks for, or all of it. Throws Error(Usage) if it leaves the image.
-Image croppedAs(const CompareOptions& options, const Image& image);
+/// Stops for the metrics that judge images as shown: --exposure; else those in the state of the reference, then of the
+/// image; else 0. A picture that is stored as shown (.png and the like) has its exposure in it already.
+struct ExposureUsed {
+    float ev = 0;
+    std::string from;     ///< "--exposure", "state of ref.exr", "no state"
+    std::string warning;  ///< the two files differ; empty: they do not
+};
+
+/// Two images with what masks and crops leave of them, prepared for measuring, and as they came.
+struct ComparedPair {
+    ImagePair pair;
+    Image image, reference;  ///< before non-finite pixels were blanked; held if `layers` was asked for
+    Image motion, depth;     ///< of the reference, where it has them; read if `layers` was asked for
+    ExposureUsed exposure;
+};
+
+ComparedPair loadPair(const CompareOptions& options, const std::filesystem::path& image,
+                      const std::filesystem::path& reference, bool layers);
 
 using MetricResults = std::vector<std::pair<const Metric*, Measurement>>;
 /// Measures, and writes maps as `<metric><suffix>.exr` and .png where they are asked for.
@@ -19,8 +33,12 @@ MetricResults measureAll(const CompareOptions& options, const std::vector<const 
                          const std::string& suffix);
 /// The error map as it is (.exr) and in false colour (.png).
 void writeMap(const std::filesystem::path& folder, const std::string& name, const char* colours, const Image& map);
-/// Members "metrics" and "details"; infinity and NaN are null.
-nlohmann::ordered_json jsonOf(const MetricResults& results);
+/// Adds a measurement to the members "metrics", "details" and "no_value" (why a number is NaN or infinite, which is null).
+void addMeasurement(nlohmann::ordered_json& report, const std::string& id, const Measurement& measurement);
+/// Members "nonfinite_pixels" (of the two together), "nonfinite_image", "nonfinite_reference" and "counted_pixels".
+void addCounts(nlohmann::ordered_json& report, const ImagePair& pair);
+/// A number as tables show it: "-" for NaN.
+std::string valueText(double value);
 
 /// Sequences: see CompareOptions.
 int runCompareSequence(const CompareOptions& options);

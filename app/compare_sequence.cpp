@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <optional>
 
 #include "app/compare_parts.h"
+#include "app/compare_sequence.h"
 #include "app/render_command.h"
 #include "base/error.h"
 #include "base/files.h"
-#include "image/exr.h"
-#include "image/hdr.h"
 #include "measure/temporal.h"
 
 namespace lumi {
@@ -63,7 +60,7 @@ WantedMetrics wantedMetrics(const std::vector<std::string>& ids) {
     return wanted;
 }
 
-/// What the next frame needs of this one.
+/// What the next frame needs of this one: images as they came, with their broken pixels.
 struct Frame {
     Image image, reference, depth, motion;
 };
@@ -74,10 +71,16 @@ public:
 
     int run() {
         findFrames();
+        for (const Metric* metric : wanted_.images) report_.ids.emplace_back(metric->id);
+        if (wanted_.temporal) report_.ids.emplace_back("temporal");
+        if (wanted_.reprojected) report_.ids.emplace_back("temporal_reprojected");
+        report_.lagWanted = wanted_.lag;
         if (!options_.maps.empty()) fs::create_directories(options_.maps);
         for (const int64_t number : numbers_) compare(number);
         finishLag();
-        print();
+        if (motionMissing_)
+            report_.warnings.push_back("temporal_reprojected wants references with the layer motion (reference --buffers motion)");
+        printSequence(report_, options_);
         return 0;
     }
 
@@ -95,161 +98,92 @@ private:
             numbers_ = framesThere(options_.image.string());
         if (numbers_.empty()) throwBadInput({"no such files", options_.image.string(), "frames 0, 1, 2, ...", ""});
         for (const int64_t number : numbers_)
-            if (!fs::exists(referenceName(number)))
-                throwBadInput({"no such file", referenceName(number), "a reference for each frame", ""});
+            for (const std::string& name : {imageName(number), referenceName(number)})
+                if (!fs::exists(name)) throwBadInput({"no such file", name, "an image and a reference for each frame", ""});
+        for (size_t i = 1; i < numbers_.size(); ++i)
+            for (int64_t n = numbers_[i - 1] + 1; n < numbers_[i]; ++n) report_.missing.push_back(n);
+        if (options_.frames || !isPattern(options_.reference)) return;
+        for (const int64_t number : framesThere(options_.reference.string()))
+            if (!std::binary_search(numbers_.begin(), numbers_.end(), number)) report_.referencesAlone.push_back(number);
     }
 
     void compare(int64_t number) {
-        const ImagePair pair = loadPair(options_, imageName(number), referenceName(number));
-        width_ = pair.image.width(), height_ = pair.image.height();
-        nonFinite_ += pair.nonFinitePixels;
-        ordered_json entry = {{"frame", number}, {"nonfinite_pixels", pair.nonFinitePixels}};
-        ordered_json measured = jsonOf(measureAll(options_, wanted_.images, pair, suffix(number)));
-        if (measured["metrics"].is_null()) measured["metrics"] = ordered_json::object();
-        Frame now = frameOf(pair, number);
-        const bool follows = previous_ && previousNumber_ + 1 == number;
-        if (follows) addTemporal(pair, now, number, measured);
-        if (wanted_.lag) addLag(pair, now, number);
-        entry.update(measured);
-        frames_.push_back(std::move(entry));
+        const bool sequential = wanted_.temporal || wanted_.reprojected || wanted_.lag;
+        ComparedPair compared = loadPair(options_, imageName(number), referenceName(number), sequential);
+        const ImagePair& pair = compared.pair;
+        note(compared, number);
+        ordered_json entry = {{"frame", number}};
+        addCounts(entry, pair);
+        for (const char* key : {"metrics", "details"}) entry[key] = ordered_json::object();
+        for (const auto& [metric, result] : measureAll(options_, wanted_.images, pair, suffix(number)))
+            addMeasurement(entry, metric->id, result);
+        Frame now{std::move(compared.image), std::move(compared.reference), std::move(compared.depth), std::move(compared.motion)};
+        if (previousNumber_ >= 0) addConsecutive(pair, now, number, entry);
+        if (wanted_.lag) lag_.add(number, now.image, now.reference, pair.mask.empty() ? nullptr : &pair.mask);
+        report_.frames.push_back(std::move(entry));
         previous_ = std::move(now);
         previousNumber_ = number;
     }
 
-    Frame frameOf(const ImagePair& pair, int64_t number) const {
-        Frame frame{pair.image, pair.reference, {}, {}};
-        if (!wanted_.reprojected || lowerExtension(referenceName(number)) != ".exr") return frame;
-        const ExrLayers layers = readExr(referenceName(number));
-        frame.motion = croppedAs(options_, layers.image("motion", "XYZ"));
-        frame.depth = croppedAs(options_, layers.image("depth", "Z"));
-        if (frame.depth.empty()) frame.depth = croppedAs(options_, layers.image("", "Z"));
-        return frame;
+    /// Sums up what is told of all frames together. Throws Error(BadInput) for a frame of another size.
+    void note(const ComparedPair& compared, int64_t number) {
+        const ImagePair& pair = compared.pair;
+        if (previousNumber_ < 0) {
+            report_.width = pair.image.width(), report_.height = pair.image.height();
+            report_.exposureEv = compared.exposure.ev, report_.exposureFrom = compared.exposure.from;
+        }
+        if (pair.image.width() != report_.width || pair.image.height() != report_.height)
+            throwBadInput({"frames differ in size", imageName(number), fmt::format("{}x{}", report_.width, report_.height),
+                           fmt::format("{}x{}", pair.image.width(), pair.image.height())});
+        if (!compared.exposure.warning.empty() && report_.warnings.empty()) report_.warnings.push_back(compared.exposure.warning);
+        if (compared.exposure.ev != report_.exposureEv)
+            throwBadInput({"frames were made at different exposures", imageName(number), fmt::format("{} EV as before, or --exposure", report_.exposureEv),
+                           fmt::format("{} EV", compared.exposure.ev)});
+        report_.nonFinite += pair.nonFinitePixels;
+        report_.nonFiniteImage += pair.nonFiniteImage, report_.nonFiniteReference += pair.nonFiniteReference;
     }
 
-    void addTemporal(const ImagePair& pair, const Frame& now, int64_t number, ordered_json& measured) {
-        const auto measure = [&](const char* id, const Image& image, const Image& before, bool follow, bool wantMap) {
-            TemporalPair temporal{image, before};
-            temporal.exposureEv = options_.exposureEv;
-            if (!pair.valid.empty()) temporal.mask = &pair.valid;
-            if (follow) {
-                temporal.motion = &now.motion;
-                if (!now.depth.empty() && !previous_->depth.empty())
-                    temporal.depth = &now.depth, temporal.previousDepth = &previous_->depth;
-            }
-            const Measurement result = follow ? measureReprojectedTemporal(temporal, wantMap) : measureTemporal(temporal, wantMap);
-            if (wantMap) writeMap(options_.maps, id + suffix(number), "magma", result.map);
-            return result;
-        };
-        const bool maps = !options_.maps.empty();
-        const auto add = [&](const char* id, bool follow) {
-            const Measurement own = measure(id, now.image, previous_->image, follow, maps);
-            measured["metrics"][id] = own.value;
-            for (const auto& [name, value] : own.details) measured["details"][id][name] = value;
-            measured["details"][id]["reference"] = measure(id, now.reference, previous_->reference, follow, false).value;
+    Measurement consecutive(const ImagePair& pair, const Frame& now, const Image& image, const Image& before, bool follow, bool wantMap) const {
+        TemporalPair temporal{image, before};
+        temporal.exposureEv = pair.exposureEv;
+        if (!pair.mask.empty()) temporal.mask = &pair.mask;
+        if (!follow) return measureTemporal(temporal, wantMap);
+        temporal.motion = &now.motion;
+        if (!now.depth.empty() && !previous_.depth.empty()) temporal.depth = &now.depth, temporal.previousDepth = &previous_.depth;
+        return measureReprojectedTemporal(temporal, wantMap);
+    }
+
+    void addConsecutive(const ImagePair& pair, const Frame& now, int64_t number, ordered_json& entry) {
+        const auto add = [&](const std::string& id, bool follow) {
+            Measurement none;
+            if (previousNumber_ + 1 != number) none.reason = fmt::format("frame {} is missing", number - 1);
+            else if (follow && now.motion.empty()) none.reason = "the reference holds no layer motion";
+            if (!none.reason.empty()) return addMeasurement(entry, id, none);
+            const Measurement own = consecutive(pair, now, now.image, previous_.image, follow, !options_.maps.empty());
+            if (!options_.maps.empty()) writeMap(options_.maps, id + suffix(number), "magma", own.map);
+            addMeasurement(entry, id, own);
+            const double reference = consecutive(pair, now, now.reference, previous_.reference, follow, false).value;
+            entry["details"][id]["reference"] = std::isfinite(reference) ? ordered_json(reference) : ordered_json();
         };
         if (wanted_.temporal) add("temporal", false);
-        if (wanted_.reprojected && !now.motion.empty()) add("temporal_reprojected", true);
-        else if (wanted_.reprojected) motionMissing_ = true;
-    }
-
-    /// The step is where the reference changes most, and much more than otherwise: known at the end. Until then each
-    /// frame that changes more than any before it is taken for it.
-    void addLag(const ImagePair& pair, const Frame& now, int64_t number) {
-        if (previous_) {
-            const double change = measureTemporal({now.reference, previous_->reference}, false).value;
-            changes_.push_back(change);
-            if (!lag_ || change > stepChange_) {
-                lag_.emplace(previous_->reference, now.reference, pair.valid.empty() ? nullptr : &pair.valid);
-                stepChange_ = change;
-                stepFrame_ = number;
-            }
-        }
-        if (lag_) lag_->add(now.image);
+        if (wanted_.reprojected) add("temporal_reprojected", true);
+        motionMissing_ = motionMissing_ || (wanted_.reprojected && now.motion.empty());
     }
 
     void finishLag() {
-        if (!lag_) return;
-        std::vector<double> sorted = changes_;
-        std::sort(sorted.begin(), sorted.end());
-        const double usual = sorted[(sorted.size() - 1) / 2];
-        if (!lag_->changes() || !(stepChange_ > 0.01) || (sorted.size() > 1 && stepChange_ < 4 * usual)) lag_.reset();
-        if (lag_ && !options_.maps.empty()) writeMap(options_.maps, "lag", "magma", lag_->map());
-    }
-
-    /// Means over the frames that have a value; lag is one number.
-    ordered_json means() const {
-        ordered_json result = ordered_json::object();
-        std::map<std::string, std::pair<double, int>> sums;
-        std::vector<std::string> order;
-        for (const ordered_json& frame : frames_)
-            for (const auto& [id, value] : frame["metrics"].items()) {
-                if (!sums.count(id)) order.push_back(id);
-                auto& [sum, count] = sums[id];
-                const double number = value.is_number() ? value.get<double>() : std::nan("");
-                if (std::isnan(number)) continue;
-                sum += number;
-                ++count;
-            }
-        for (const std::string& id : order) {
-            const auto& [sum, count] = sums[id];
-            result[id] = count > 0 ? ordered_json(sum / count) : ordered_json();
-        }
-        if (wanted_.lag) result["lag"] = lag_ && lag_->lag() >= 0 ? ordered_json(lag_->lag()) : ordered_json();
-        return result;
-    }
-
-    void print() const {
-        if (!options_.quiet) {
-            if (nonFinite_ > 0)
-                fmt::print(stderr, "warning: {} pixels are NaN or infinite; they count in no metric\n", nonFinite_);
-            if (motionMissing_)
-                fmt::print(stderr, "warning: temporal_reprojected wants references with the layer motion (reference --buffers motion)\n");
-        }
-        const ordered_json mean = means();
-        if (options_.json) {
-            ordered_json details = ordered_json::object();
-            if (lag_) details["lag"] = {{"step_frame", stepFrame_}, {"curve", lag_->curve()}};
-            const ordered_json report = {{"width", width_},    {"height", height_}, {"nonfinite_pixels", nonFinite_},
-                                         {"metrics", mean},    {"details", details}, {"frames", frames_}};
-            fmt::print("{}\n", report.dump(2));
-            return;
-        }
-        const auto cell = [](const ordered_json& values, const std::string& id) {
-            const auto found = values.find(id);
-            const bool there = found != values.end() && found->is_number();
-            return fmt::format("  {:>12}", there ? fmt::format("{:.6g}", found->get<double>()) : "-");
-        };
-        std::string head = "frame   ", last = "mean    ";
-        for (const auto& [id, value] : mean.items()) {
-            if (id == "lag") continue;
-            head += fmt::format("  {:>12}", id.substr(0, 12));
-            last += cell(mean, id);
-        }
-        fmt::print("{}\n", head);
-        for (const ordered_json& frame : frames_) {
-            std::string line = fmt::format("{:<8}", frame["frame"].get<int64_t>());
-            for (const auto& [id, value] : mean.items())
-                if (id != "lag") line += cell(frame["metrics"], id);
-            fmt::print("{}\n", line);
-        }
-        fmt::print("{}\n", last);
-        if (!lag_) return;
-        if (lag_->lag() >= 0) fmt::print("lag: {} frames after the step at frame {}; response", lag_->lag(), stepFrame_);
-        else fmt::print("lag: not reached after the step at frame {}; response", stepFrame_);
-        for (const double value : lag_->curve()) fmt::print(" {:.3f}", value);
-        fmt::print("\n");
+        if (!wanted_.lag) return;
+        report_.lag = lag_.result();
+        const Image map = lag_.map();
+        if (!map.empty() && !options_.maps.empty()) writeMap(options_.maps, "lag", "magma", map);
     }
 
     const CompareOptions& options_;
     const WantedMetrics wanted_;
     std::vector<int64_t> numbers_;
-    int width_ = 0, height_ = 0;
-    int64_t nonFinite_ = 0, previousNumber_ = -1, stepFrame_ = -1;
-    std::optional<Frame> previous_;
-    std::vector<ordered_json> frames_;
-    std::vector<double> changes_;
-    std::optional<LagMeter> lag_;
-    double stepChange_ = 0;
+    SequenceReport report_;
+    LagSequence lag_;
+    Frame previous_;
+    int64_t previousNumber_ = -1;
     bool motionMissing_ = false;
 };
 

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "app/commands.h"
-#include "measure/measure.h"
+#include "measure/temporal.h"
 #include "params/json.h"
 #include "reconstruct/catalog.h"
 #include "study/study_file.h"
@@ -70,18 +70,25 @@ void listModules(const std::string& only, const MachineOptions& machine) {
     print(machine, all, rows);
 }
 
+/// Metrics of two images, then those of sequences.
 void listMetrics(const MachineOptions& machine) {
     json all = json::array();
-    std::vector<Row> rows;
-    for (const Metric& metric : metricCatalog()) {
+    std::vector<Row> rows{{"ID", "RANGE", "BETTER", "SYMMETRIC", "OF", "SOURCE", "DEFINITION"}};
+    const auto add = [&](const auto& metric, bool higher, bool map, const char* of) {
         all.push_back({{"id", metric.id},
                        {"title", metric.title},
                        {"definition", metric.definition},
-                       {"higher_is_better", metric.higherIsBetter},
+                       {"range", metric.range},
+                       {"higher_is_better", higher},
                        {"symmetric", metric.symmetric},
-                       {"has_map", metric.mapColours != nullptr}});
-        rows.push_back({metric.id, metric.title, metric.definition});
-    }
+                       {"has_map", map},
+                       {"of", of},
+                       {"source", metric.source}});
+        rows.push_back({metric.id, metric.range, higher ? "higher" : "lower", metric.symmetric ? "yes" : "no", of,
+                        metric.source, fmt::format("{}: {}", metric.title, metric.definition)});
+    };
+    for (const Metric& metric : metricCatalog()) add(metric, metric.higherIsBetter, metric.mapColours != nullptr, "images");
+    for (const SequenceMetric& metric : sequenceMetricCatalog()) add(metric, false, true, "frames");
     print(machine, all, rows);
 }
 

@@ -23,11 +23,13 @@ public:
             ->type_name("X,Y,W,H")->take_last();
         app_->add_option("--mask", compare.mask, "Image of the same size: only where its luminance is above 0.5")
             ->type_name("FILE")->take_last();
-        app_->add_option("--exposure", compare.exposureEv, "Stops, for metrics that judge the image as shown (0)")
+        app_->add_option("--exposure", compare.exposureEv, "Stops, for metrics that judge images as shown (those in the files' state, else 0)")
             ->type_name("EV")->check(between(-100.0, 100.0))
             ->take_last();
         app_->add_option("--flip-exposures", flipExposures_, "Exposure range of HDR-FLIP in stops (what the reference says)")
             ->type_name("START,STOP[,COUNT]")->take_last();
+        app_->add_option("--relmse-epsilon", compare.settings.relMseEpsilon, "Added to the squared gray reference in relMSE (0.001)")
+            ->type_name("E")->check(between(1e-12, 1e6))->take_last();
         app_->add_option("--frames", frames_, "Of frames: 0..N-1, or A..B without B (those there are)")
             ->type_name("N|A..B")->take_last();
         addMachine(*app_, line_.machine, true);
@@ -38,7 +40,7 @@ public:
         line_.command = Command::Compare;
         line_.compare.metrics = splitList(metrics_);
         if (!crop_.empty()) line_.compare.crop = parseCrop(crop_, "--crop");
-        if (!flipExposures_.empty()) line_.compare.flipExposures = parseFlipExposures(flipExposures_, "--flip-exposures");
+        if (!flipExposures_.empty()) line_.compare.settings.flipExposures = parseFlipExposures(flipExposures_, "--flip-exposures");
         if (!frames_.empty()) {
             const FrameRange frames = parseFrames(frames_);
             line_.compare.frames = {frames.begin, frames.end};

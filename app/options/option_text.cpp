@@ -104,10 +104,9 @@ FlipExposures parseFlipExposures(const std::string& text, const std::string& opt
     const OptionText typed(text, option, "START,STOP in stops, or START,STOP,COUNT, as -3,3,5");
     const std::vector<std::string> parts = splitList(text);
     if (parts.size() != 2 && parts.size() != 3) typed.refuse();
-    FlipExposures range{typed.number(parts[0], 100), typed.number(parts[1], 100), 2};
+    FlipExposures range = FlipExposures::over(typed.number(parts[0], 100), typed.number(parts[1], 100));
     if (range.stop < range.start) typed.refuse();
-    range.count = parts.size() == 3 ? static_cast<int>(std::min<int64_t>(typed.whole(parts[2], 1), 1000))
-                                    : std::max(2, static_cast<int>(std::ceil(range.stop - range.start)));
+    if (parts.size() == 3) range.count = static_cast<int>(std::min<int64_t>(typed.whole(parts[2], 1), 1000));
     return range;
 }
 

@@ -98,6 +98,14 @@ Replay parseReplay(const std::string& text, const std::string& where) {
     return replay;
 }
 
+std::optional<float> exposureOfState(const std::string& text) {
+    const json state = json::parse(text, nullptr, false);
+    if (!state.is_object() || state.value("format", json()) != kFormat) return std::nullopt;
+    const auto exposure = state.find("exposure");
+    if (exposure == state.end() || !exposure->is_number()) return std::nullopt;
+    return exposure->get<float>();
+}
+
 std::string stateTextOf(const std::filesystem::path& file) {
     const std::string text = lowerExtension(file) == ".png" ? readPng(file).texts[kStateKey] : embeddedState(file);
     if (text.empty()) throwBadInput({"holds no state of lumiscope", file.string(), "", ""});

@@ -29,6 +29,10 @@ struct Replay {
 /// Error(BadInput), as does one without a state.
 std::string stateTextOf(const std::filesystem::path& file);
 
+/// Stops at which the picture of a state was shown, the scene's own unless somebody changed them: what metrics on
+/// tone-mapped images take. Nothing if the text is no state or tells none.
+std::optional<float> exposureOfState(const std::string& text);
+
 /// Reads what StateLog::json() wrote. Throws Error(BadInput) headed by `where`.
 Replay parseReplay(const std::string& text, const std::string& where);
 /// From the state embedded in a .exr or .png, or a .json that holds the state alone.

@@ -169,6 +169,7 @@ std::string StateLog::json(const nlohmann::json& output) const {
                                   {"start", {{"frame", begin.frame}, {"set", start}}},
                                   {"frames", framesFrom(first + forgotten_)},
                                   {"frame", entry(present).frame},
+                                  {"exposure", entry(present).document->view(output.value("view", 0)).display.exposureEv},
                                   {"output", output}};
     return state.dump();
 }

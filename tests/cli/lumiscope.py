@@ -98,6 +98,29 @@ def write_png(path, width, height, colour):
                      chunk(b"IEND", b""))
 
 
+def write_exr(path, width, height, colour):
+    """Three float channels without compression; colour(x, y) gives the three values, which may be NaN or infinite."""
+    def attribute(name, kind, body):
+        return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(body)) + body
+
+    window = struct.pack("<iiii", 0, 0, width - 1, height - 1)
+    channels = b"".join(name + b"\0" + struct.pack("<iB3xii", 2, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
+    header = (b"\x76\x2f\x31\x01\x02\0\0\0" + attribute("channels", "chlist", channels) +
+              attribute("compression", "compression", b"\0") + attribute("dataWindow", "box2i", window) +
+              attribute("displayWindow", "box2i", window) + attribute("lineOrder", "lineOrder", b"\0") +
+              attribute("pixelAspectRatio", "float", struct.pack("<f", 1)) +
+              attribute("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)) +
+              attribute("screenWindowWidth", "float", struct.pack("<f", 1)) + b"\0")
+    lines = []
+    for y in range(height):
+        row = [colour(x, y) for x in range(width)]
+        lines.append(struct.pack("<ii", y, 12 * width) +
+                     b"".join(struct.pack(f"<{width}f", *(values[c] for values in row)) for c in (2, 1, 0)))
+    first = len(header) + 8 * height
+    offsets = b"".join(struct.pack("<Q", first + y * len(lines[0])) for y in range(height))
+    path.write_bytes(header + offsets + b"".join(lines))
+
+
 def exr_header(data):
     """Attributes of a single-part OpenEXR file, by name; channels as {name: type}."""
     position = 8

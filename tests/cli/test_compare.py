@@ -1,5 +1,5 @@
 """compare: numbers of known images, maps, parts of images, and what is refused."""
-from lumiscope import CommandTest, exr_header, main, write_png
+from lumiscope import SOURCE, CommandTest, exr_header, main, write_exr, write_png
 
 WIDTH, HEIGHT = 48, 40
 METRICS = ["rmse", "relmse", "mse", "mae", "psnr", "smape", "ssim", "ms_ssim", "flip", "hdr_flip", "cpbd"]
@@ -85,9 +85,84 @@ class Compare(CommandTest):
 
     def test_the_table(self):
         result = self.good("compare", "pattern.png", "half.png", "--metrics", "mse,flip")
-        names = [line.split()[0] for line in result.out.splitlines() if not line.startswith(" ")]
-        self.assertEqual(names, ["mse", "flip"])
+        table, facts = result.out.split("\n\n")
+        self.assertEqual([line.split()[0] for line in table.splitlines() if not line.startswith(" ")], ["mse", "flip"])
+        self.assertIn(f"{WIDTH}x{HEIGHT}, {WIDTH * HEIGHT} pixels count; not finite: 0 in the image, 0 in the reference; exposure 0 EV", facts)
         self.assertEqual(result.err, "")
+
+    def test_nothing_that_counts_is_no_value(self):
+        for mask in ("black.png", "half.png"):
+            report = self.good("compare", "pattern.png", "half.png", "--mask", mask, "--json").json
+            self.assertEqual(report["counted_pixels"], 0 if mask == "black.png" else WIDTH * HEIGHT // 2)
+            for name in METRICS:
+                if mask == "black.png":
+                    self.assertIsNone(report["metrics"][name], name)
+                    self.assertEqual(report["no_value"][name], "the mask leaves no pixel", name)
+                else:
+                    self.assertIsNotNone(report["metrics"][name], name)
+        table = self.good("compare", "pattern.png", "half.png", "--mask", "black.png", "--metrics", "mse,ssim").out
+        for name in ("mse", "ssim"):
+            self.assertRegex(table, rf"(?m)^{name} +- +the mask leaves no pixel$")
+        report = self.good("compare", "pattern.png", "half.png", "--crop", "0,0,8,40", "--metrics", "mse,ssim", "--json").json
+        self.assertIsNotNone(report["metrics"]["mse"])
+        self.assertIn("11x11", report["no_value"]["ssim"])
+
+    def test_broken_pixels_are_told(self):
+        nan, infinite = float("nan"), float("inf")
+        write_exr(self.folder / "good.exr", 16, 12, lambda x, y: (0.5, 0.25 + 0.01 * x, 0.125))
+        write_exr(self.folder / "bad.exr", 16, 12, lambda x, y: (nan if y == 3 and x < 2 else 0.75, 0.25 + 0.01 * x, 0.125))
+        write_exr(self.folder / "worse.exr", 16, 12, lambda x, y: (0.5, infinite if x == 5 else 0.5, 0.125))
+        result = self.good("compare", "bad.exr", "worse.exr", "--json")
+        report = result.json
+        self.assertEqual([report[k] for k in ("nonfinite_image", "nonfinite_reference", "nonfinite_pixels", "counted_pixels")],
+                         [2, 12, 14, 16 * 12 - 14])
+        self.assertIn("14 pixels are NaN or infinite", result.err)
+        for name in METRICS:
+            self.assertIsNotNone(report["metrics"][name], name)
+        self.assertAlmostEqual(self.metrics("bad.exr", "good.exr", "--metrics", "mse")["mse"], 0.25 ** 2 / 3, places=7)
+        table = self.good("compare", "bad.exr", "worse.exr", "--metrics", "mse").out
+        self.assertIn("178 pixels count; not finite: 2 in the image, 12 in the reference", table)
+        write_exr(self.folder / "none.exr", 16, 12, lambda x, y: (nan, 1, 1))
+        report = self.good("compare", "none.exr", "good.exr", "--json").json
+        for name in METRICS:
+            self.assertIsNone(report["metrics"][name], name)
+            self.assertEqual(report["no_value"][name], "no pixel of the image is finite", name)
+
+    def test_settings_are_printed_with_the_number(self):
+        def relmse(*more):
+            report = self.good("compare", "pattern.png", "half.png", "--metrics", "relmse", *more, "--json").json
+            return report["metrics"]["relmse"], report["details"]["relmse"]["epsilon"]
+        self.assertEqual(relmse()[1], 0.001)
+        wide, epsilon = relmse("--relmse-epsilon", "0.1")
+        self.assertEqual(epsilon, 0.1)
+        self.assertLess(wide, relmse()[0])
+        table = self.good("compare", "pattern.png", "half.png", "--metrics", "relmse", "--relmse-epsilon", "0.1").out
+        self.assertIn("epsilon = 0.1", table)
+        for bad in ("0", "-1", "wide"):
+            self.refused(2, ["--relmse-epsilon"], "compare", "half.png", "half.png", "--relmse-epsilon=" + bad)
+
+    def test_the_exposure_of_the_files_state(self):
+        for name, exposure in (("dark", -2), ("bright", 1)):
+            self.good("render", "cornell", "--size", "32x24", "--exposure", exposure, "--out", name + ".exr", "--quiet")
+        self.good("render", "cornell", "--size", "32x24", "--spp", 4, "--out", "plain.exr", "--quiet")
+
+        def report(*arguments):
+            return self.good("compare", *arguments, "--metrics", "ssim", "--json")
+        dark = report("plain.exr", "dark.exr").json
+        self.assertEqual((dark["exposure"], dark["exposure_from"]), (-2, "state of dark.exr"))
+        self.assertEqual(dark["metrics"], report("plain.exr", "dark.exr", "--exposure=-2").json["metrics"])
+        self.assertNotEqual(dark["metrics"], report("plain.exr", "dark.exr", "--exposure=0").json["metrics"])
+        both = report("bright.exr", "dark.exr")
+        self.assertIn("bright.exr was made at an exposure of 1 EV", both.err)
+        self.assertEqual(both.json["exposure"], -2, "the reference's counts")
+        self.assertEqual(report("half.png", "pattern.png").json["exposure_from"], "stored as shown")
+        scene = (SOURCE / "scenes/cornell.json").read_text().replace('"exposure": 0.8', '"exposure": 1.5')
+        self.assertIn('"exposure": 1.5', scene)
+        (self.folder / "lit.json").write_text(scene)
+        self.good("render", "lit.json", "--size", "32x24", "--out", "lit.exr", "--quiet")
+        self.good("reference", "lit.json", "--size", "32x24", "--spp", 16, "--out", "ref.exr", "--quiet", XDG_CACHE_HOME=str(self.folder))
+        lit = self.good("compare", "lit.exr", "ref.exr", "--metrics", "ssim", "--json")
+        self.assertEqual((lit.json["exposure"], lit.json["exposure_from"], lit.err), (1.5, "state of ref.exr", ""))
 
     def test_two_renderings(self):
         for name, spp in (("noisy.exr", 1), ("better.exr", 16), ("best.exr", 256)):
@@ -136,6 +211,57 @@ class Compare(CommandTest):
         self.refused(3, ["none.%d.png"], "compare", "none.%d.png", "ref.%04d.png")
         self.refused(2, ["--frames"], "compare", "half.png", "half.png", "--frames", "3")
         self.refused(2, ["lag", "frames"], "compare", "half.png", "half.png", "--metrics", "mse,lag")
+
+    def frames(self, pattern, levels, size=(16, 12), broken=()):
+        for frame, level in levels.items():
+            write_exr(self.folder / (pattern % frame), *size,
+                      lambda x, y: (float("nan") if (frame, x, y) in broken else level, level, level))
+
+    def test_frames_that_are_missing_or_broken(self):
+        self.frames("a.%d.exr", {0: 0.1, 1: 0.1, 2: 0.4, 4: 0.45, 5: 0.5}, broken={(1, 3, 3), (1, 4, 3)})
+        self.frames("r.%d.exr", {0: 0.1, 1: 0.1, 2: 0.5, 3: 0.5, 4: 0.5, 5: 0.5, 6: 0.5}, broken={(2, 0, 0)})
+        result = self.good("compare", "a.%d.exr", "r.%d.exr", "--metrics", "mae,psnr,temporal,lag", "--json")
+        report = result.json
+        self.assertEqual([frame["frame"] for frame in report["frames"]], [0, 1, 2, 4, 5])
+        self.assertEqual((report["missing_frames"], report["references_without_image"]), ([3], [3, 6]))
+        self.assertIn("no image of frame 3", result.err)
+        self.assertIn("left out: frame 3, 6", result.err)
+        self.assertEqual([f["nonfinite_image"] for f in report["frames"]], [0, 2, 0, 0, 0])
+        self.assertEqual([f["nonfinite_reference"] for f in report["frames"]], [0, 0, 1, 0, 0])
+        self.assertEqual((report["nonfinite_image"], report["nonfinite_reference"]), (2, 1))
+        # Broken pixels of the frame before count for nothing in the next either.
+        self.assertEqual(report["frames"][2]["details"]["temporal"]["nonfinite_pixels"], 2)
+        self.assertIsNone(report["frames"][3]["metrics"]["temporal"])
+        self.assertEqual(report["frames"][3]["no_value"]["temporal"], "frame 3 is missing")
+        self.assertEqual(report["frames_counted"], {"mae": 5, "psnr": 2, "temporal": 3})
+        self.assertEqual(report["no_value"]["lag"], "frame 3 is missing")
+        self.assertIsNone(report["metrics"]["lag"])
+        table = self.good("compare", "a.%d.exr", "r.%d.exr", "--metrics", "mae,psnr,temporal,lag").out
+        self.assertRegex(table, r"(?m)^psnr: mean of 2 of 5 frames; .*frame 0: infinite")
+        self.assertRegex(table, r"(?m)^temporal: mean of 3 of 4 frames; .*frame 4: frame 3 is missing")
+        self.assertRegex(table, r"(?m)^1 .* 2 +0$")
+        self.assertIn("lag: no value: frame 3 is missing", table)
+        one = self.good("compare", "a.%d.exr", "r.%d.exr", "--metrics", "mae,temporal", "--frames", "4..5", "--json").json
+        self.assertEqual((one["metrics"]["temporal"], one["no_value"]), (None, {"temporal": "there is one frame only"}))
+        self.refused(3, ["a.3.exr"], "compare", "a.%d.exr", "r.%d.exr", "--frames", "2..5")
+        self.frames("a.%d.exr", {3: 0.4}, size=(16, 10))
+        self.refused(3, ["a.3.exr", "16x12", "16x10"], "compare", "a.%d.exr", "r.%d.exr", "--metrics", "mae")
+        self.frames("r.%d.exr", {3: 0.4}, size=(16, 10))
+        self.refused(3, ["a.3.exr", "frames differ in size"], "compare", "a.%d.exr", "r.%d.exr", "--metrics", "mae")
+
+    def test_lag_is_of_linear_light_in_the_mask(self):
+        # Far beyond what a screen shows, and half of the picture does something else.
+        before, after = {f: 20.0 for f in range(3)}, {f: 50.0 for f in range(3, 8)}
+        self.frames("r.%d.exr", before | after)
+        for frame, level in {0: 20, 1: 20, 2: 20, 3: 35, 4: 42.5, 5: 46.25, 6: 48.125, 7: 49}.items():
+            write_exr(self.folder / f"a.{frame}.exr", 16, 12, lambda x, y: (level if x < 8 else 1000 * frame,) * 3)
+        write_png(self.folder / "left.png", 16, 12, lambda x, y: (255,) * 3 if x < 8 else (0,) * 3)
+        report = self.good("compare", "a.%d.exr", "r.%d.exr", "--metrics", "lag", "--mask", "left.png", "--json").json
+        self.assertEqual((report["metrics"]["lag"], report["details"]["lag"]["step_frame"]), (3, 3))
+        for seen, expected in zip(report["details"]["lag"]["curve"], (0.5, 0.75, 0.875, 0.9375, 29 / 30)):
+            self.assertAlmostEqual(seen, expected, places=6)
+        other = self.good("compare", "a.%d.exr", "r.%d.exr", "--metrics", "lag", "--mask", "left.png", "--exposure=-9", "--json").json
+        self.assertEqual(other["details"], report["details"])
 
     def test_movement_is_no_flicker(self):
         walk = ["--size", "64x48", "--frames", "0..3", "--fps", 30, "--set", "camera.jitter=none"]

@@ -1,5 +1,5 @@
 """list and info: tables for people, JSON for tools."""
-from lumiscope import CommandTest, main
+from lumiscope import SOURCE, CommandTest, main
 
 SCENES = ["cornell", "room", "atrium", "still-life", "parade"]
 SIGNALS = """noisy emission albedo specularAlbedo directDiffuse indirectDiffuse directSpecular indirectSpecular direct
@@ -34,12 +34,18 @@ class List(CommandTest):
     def test_metrics(self):
         metrics = self.good("list", "metrics", "--json").json
         self.assertEqual([m["id"] for m in metrics], ["rmse", "relmse", "mse", "mae", "psnr", "smape", "ssim", "ms_ssim",
-                                                      "flip", "hdr_flip", "cpbd"])
+                                                      "flip", "hdr_flip", "cpbd", "temporal", "temporal_reprojected", "lag"])
         table = self.good("list", "metrics").out
         for metric in metrics:
             self.assertTrue(metric["title"] and metric["definition"], metric["id"])
             self.assertIn(metric["definition"], table)
+            self.assertIn(metric["range"], table)
+            self.assertIn(metric["source"], table)
+            if metric["source"][-1].isdigit():
+                self.assertIn(f"| {metric['source']} |", (SOURCE / "README.md").read_text(), "its source is in the bibliography")
         self.assertEqual({m["id"] for m in metrics if m["higher_is_better"]}, {"psnr", "ssim", "ms_ssim", "cpbd"})
+        self.assertEqual({m["id"] for m in metrics if not m["symmetric"]}, {"relmse", "hdr_flip", "cpbd", "temporal_reprojected", "lag"})
+        self.assertEqual({m["id"] for m in metrics if m["of"] == "frames"}, {"temporal", "temporal_reprojected", "lag"})
 
     def test_parameters(self):
         parameters = {p["id"]: p for p in self.good("list", "parameters", "--json").json}
