@@ -207,7 +207,7 @@ class Compare(CommandTest):
         self.assertEqual([frame["frame"] for frame in some["frames"]], [1, 2])
         table = self.good("compare", "out.%04d.png", "ref.%04d.png", "--metrics", "rmse,lag").out
         self.assertIn("lag: 3 frames after the step at frame 2", table)
-        self.refused(3, ["ref.0006.png"], "compare", "out.%04d.png", "ref.%04d.png", "--frames", "8", "--metrics", "mae")
+        self.refused(3, ["out.0006.png"], "compare", "out.%04d.png", "ref.%04d.png", "--frames", "8", "--metrics", "mae")
         self.refused(3, ["none.%d.png"], "compare", "none.%d.png", "ref.%04d.png")
         self.refused(2, ["--frames"], "compare", "half.png", "half.png", "--frames", "3")
         self.refused(2, ["lag", "frames"], "compare", "half.png", "half.png", "--metrics", "mse,lag")
