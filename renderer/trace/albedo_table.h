@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "math/vector.h"
+#include "trace/albedo_view.h"
 
 namespace lumi {
 
@@ -56,6 +57,11 @@ public:
     Vec2 directional(RoughnessRow at, FacetView view) const { return split(smooth(at, view.column), view.length); }
     /// Mean of directional(), as interpolated, over the hemisphere weighted by the cosine.
     Vec2 average(RoughnessRow at, float alpha) const;
+
+    /// The tables, for kernels.
+    AlbedoView view() const {
+        return {&smooth_[0][0].x, &average_[0].x, kAlbedoRows, kColumns, kMeanRows, kMeanSteps, kTabledRoughness};
+    }
 
     /// What is interpolated, and how the pair follows from it.
     Vec2 smooth(RoughnessRow at, float column) const;

@@ -9,9 +9,6 @@
 namespace lumi {
 namespace {
 
-/// Growth of a path's footprint by scattering, metres a metre; small enough to keep texture averages local.
-constexpr float kDiffuseSpread = 0.1f, kSpecularSpread = 0.25f;
-
 ObserverNeeds joined(std::span<PathObserver* const> observers) {
     ObserverNeeds all{0, 0, 0, 0, false};
     for (const PathObserver* observer : observers) {
@@ -63,6 +60,7 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
     const auto count = static_cast<uint32_t>(starts.size());
     batch.paths.resize(count);
     batch.active.resize(count);
+    batch.plain.count = 0;
     batch.nonFinite = 0;
     for (uint32_t i = 0; i < count; ++i) {
         const PathStart& start = starts[i];
@@ -89,8 +87,10 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
         batch.shadowRays.clear();
         for (uint32_t row = 0; row < batch.active.size(); ++row) {
             if (wantsVertices) batch.vertexOf[batch.active[row]] = row;
-            shade(batch, row, depth, given ? firstPoints : std::span<const SurfacePoint>());
+            batch.paths[batch.active[row]].alive = false;
+            if (given || !batch.collected[row]) shade(batch, row, depth, given ? firstPoints : std::span<const SurfacePoint>());
         }
+        shadePlain(batch, depth);
         traceShadows(batch, depth, coherent, counts);
         if (wantsVertices) report(batch, depth);
         std::erase_if(batch.active, [&](uint32_t i) { return !batch.paths[i].alive; });
@@ -138,6 +138,7 @@ void Integrator::findHits(PathBatch& batch, int depth, bool coherent, TraceCount
 void Integrator::arrive(PathBatch& batch, int depth) const {
     prefetchSurfaces(scene_.tables, batch.hits);
     batch.geometry.resize(batch.active.size());
+    batch.collected.assign(batch.active.size(), 0);
     for (size_t row = 0; row < batch.active.size(); ++row) {
         const RawHit& hit = batch.hits[row];
         if (!hit.valid()) continue;
@@ -146,9 +147,16 @@ void Integrator::arrive(PathBatch& batch, int depth) const {
         path.throughput *= transmittance(path.absorption, hit.distance);
         const InstanceRecord& instance = scene_.tables.instances[hit.instance];
         if (instance.body >= 0 || isDark(instance, hit.primitive, depth)) continue;
+        const MaterialRecord& material = scene_.tables.materials[instance.materialOf(hit.primitive)];
+        if (depth < settings_.maxDepth && isPlain(instance, material)) {
+            collectPlain(batch, static_cast<uint32_t>(row), instance, material);
+            batch.collected[row] = 1;
+            continue;
+        }
         const SurfacePoint point{hit.instance, hit.primitive, {hit.u, hit.v}, path.ray.time};
         batch.geometry[row] = surfaceGeometry(scene_.tables, point, -path.ray.direction, path.cone.width);
     }
+    placePlain(batch, depth);
 }
 
 /// Of the last surface nothing is asked but its light; does it have none?
@@ -161,7 +169,6 @@ void Integrator::shade(PathBatch& batch, uint32_t row, int depth, std::span<cons
     const uint32_t index = batch.active[row];
     PathState& path = batch.paths[index];
     PathVertex* vertex = depth < needs_.vertexDepths ? &batch.vertices[row] : nullptr;
-    path.alive = false;
 
     // Where the path arrived.
     const Vec3 wo = -path.ray.direction;
@@ -191,6 +198,7 @@ void Integrator::shade(PathBatch& batch, uint32_t row, int depth, std::span<cons
     if (!isBlack(surface.emitted)) addEmission(path, surface, depth, vertex, batch);
     if (last || surface.body >= 0) return;
 
+    if (!surface.inputs.layered && !(surface.inputs.transmission > 0)) return addPlain(batch, row, surface);
     const Frame frame(surface.normal);
     Vec3 local = frame.toLocal(wo);
     local.z = std::max(local.z, 1e-5f);
@@ -257,6 +265,12 @@ void Integrator::describeVertex(const PathState& path, const Surface& surface, c
     vertex.throughput = path.throughput;
 }
 
+/// Growth of a path's footprint by scattering, metres a metre; small enough to keep texture averages local.
+float Integrator::spreadOf(bool diffuse, float roughness) {
+    constexpr float kDiffuseSpread = 0.1f, kSpecularSpread = 0.25f;
+    return diffuse ? kDiffuseSpread : kSpecularSpread * sqr(roughness);
+}
+
 bool Integrator::continuePath(PathState& path, const Surface& surface, const Frame& frame, const Bsdf& bsdf,
                               const Vec3& wo, int depth, PathVertex* vertex) const {
     const BsdfSample sample = bsdf.sample(path.stream.get1(dimension::vertex(depth, dimension::kLobe)),
@@ -296,8 +310,7 @@ bool Integrator::continuePath(PathState& path, const Surface& surface, const Fra
     path.scatterPdf = sample.delta ? 0 : sample.pdf;
     ++(diffuse ? path.diffuseCount : path.specularCount);
     path.diffuseBefore |= diffuse;
-    path.cone.spread =
-        std::max(path.cone.spread, diffuse ? kDiffuseSpread : kSpecularSpread * sqr(surface.inputs.roughness));
+    path.cone.spread = std::max(path.cone.spread, spreadOf(diffuse, surface.inputs.roughness));
     path.absorption = absorptionTowards(path, surface, sample.wi.z < 0);
     path.ray.origin =
         offsetOrigin(surface.position, side > 0 ? surface.geometricNormal : -surface.geometricNormal, surface.offset);

@@ -43,6 +43,18 @@ private:
                       int depth, PathVertex* vertex) const;
     void describeVertex(const PathState& path, const Surface& surface, const Vec3& wo, int depth,
                         PathVertex& vertex) const;
+    // Vertices on plain surfaces, all of a batch together (integrator_plain.cpp).
+    void collectPlain(PathBatch& batch, uint32_t row, const InstanceRecord& instance, const MaterialRecord& material) const;
+    void placePlain(PathBatch& batch, int depth) const;
+    void describePlain(const PathBatch& batch, int lane, int depth, PathVertex& vertex) const;
+    void fillLane(PlainLanes& lanes, int lane, uint32_t row, const PathState& path) const;
+    void addPlain(PathBatch& batch, uint32_t row, const Surface& surface) const;
+    void shadePlain(PathBatch& batch, int depth) const;
+    void drawNumbers(PathBatch& batch, int depth, bool lights, bool roulette) const;
+    void samplePlainLights(PathBatch& batch, int depth) const;
+    void pendPlainLights(PathBatch& batch, int depth) const;
+    void continuePlain(PathBatch& batch, int lane, int depth, bool lastRay) const;
+    static float spreadOf(bool diffuse, float roughness);
     void addLights(PathBatch& batch, int depth) const;
     void traceShadows(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const;
     LightReceiver receiverAt(const PathState& path, const Surface& surface) const;

@@ -2,8 +2,11 @@
 #include <vector>
 
 #include "trace/light_receiver.h"
+#include "trace/lights.h"
 #include "trace/observer.h"
 #include "trace/packets.h"
+#include "trace/plain_kernels.h"
+#include "trace/plain_surface.h"
 #include "trace/sampler.h"
 #include "trace/surface.h"
 #include "trace/tracer.h"
@@ -48,14 +51,18 @@ inline Vec3 absorptionTowards(const PathState& path, const Surface& surface, boo
 
 /// Scratch of the integrator for one batch; reused from batch to batch. Belongs to one thread at a time.
 struct PathBatch {
-    static constexpr size_t kMost = 256;
+    static constexpr size_t kMost = PlainLanes::kMost;
 
     std::vector<PathStart> starts;  ///< the caller's, if it has no other place for them
     std::vector<PathState> paths;
     std::vector<uint32_t> active;  ///< indices of paths that have a ray, in order of their starts
     std::vector<BatchRay> rays;    ///< of the active paths
     std::vector<RawHit> hits;
-    std::vector<SurfaceGeometry> geometry;  ///< of hits on triangles
+    std::vector<SurfaceGeometry> geometry;  ///< of hits on triangles, those of collected rows left out
+    std::vector<uint8_t> collected;         ///< 1 for rows that are in `plain` before they are shaded
+    PlainLanes plain;                          ///< vertices on plain surfaces
+    LightSample lights[PlainLanes::kMost];     ///< of the lanes
+    PlainTaps taps[PlainLanes::kMost];         ///< of the first lanes, whose textures are looked up
     std::vector<PendingLight> pending;
     std::vector<BatchRay> shadowRays;
     std::vector<uint8_t> blocked;

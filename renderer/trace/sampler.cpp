@@ -2,55 +2,24 @@
 
 #include <array>
 
-#include "math/hash.h"
+#include "base/isa.h"
 #include "trace/blue_noise.h"
+#include "trace/sampler_kernels.h"
+#include "trace/sobol.h"
 
 namespace lumi {
 namespace {
 
-// Bits of an index or a coordinate are kept "digits first": bit k is the k-th digit after the binary point. Owen
-// scrambling lets each digit be flipped by a hash of the digits before it; digits first, a product or a sum carries
-// only from earlier digits to later ones, so that a few of them make such a hash.
-
-uint32_t reverseBits(uint32_t v) {
-    v = __builtin_bswap32(v);
-    v = ((v & 0x0f0f0f0fu) << 4) | ((v >> 4) & 0x0f0f0f0fu);
-    v = ((v & 0x33333333u) << 2) | ((v >> 2) & 0x33333333u);
-    return ((v & 0x55555555u) << 1) | ((v >> 1) & 0x55555555u);
-}
-
-/// Nested uniform scramble of digits [Laine & Karras 2011; Burley 2020], with the multipliers that Vegdahl searched
-/// for ("Building a Better LK Hash", psychopath.io, 2021, final version).
-uint32_t owenScramble(uint32_t digits, uint32_t seed) {
-    digits ^= digits * 0x3d20adeau;
-    digits += seed;
-    digits *= (seed >> 16) | 1u;
-    digits ^= digits * 0x05526c56u;
-    return digits ^ (digits * 0x53a22864u);
-}
-
-/// Digits of the second Sobol dimension for the index whose bits are given, lowest first: digit k is the parity of all
-/// index bits j with binomial(j, k) odd, which by Lucas are the j whose bits contain those of k. One fold a bit of j.
-uint32_t sobolSecondDigits(uint32_t index) {
-    index ^= (index >> 1) & 0x55555555u;
-    index ^= (index >> 2) & 0x33333333u;
-    index ^= (index >> 4) & 0x0f0f0f0fu;
-    index ^= (index >> 8) & 0x00ff00ffu;
-    return index ^ (index >> 16);
-}
-
-/// Scrambled (0,2)-pairs of one sample and pair of dimensions. The first Sobol dimension's digits are the bits of the
-/// index itself.
+/// Scrambled (0,2)-pairs of one sample and pair of dimensions.
 class SobolPair {
 public:
     SobolPair(uint32_t index, uint32_t scramble, uint32_t pair) {
-        const uint64_t seeds = mixBits((uint64_t(scramble) << 32) | pair);
+        const uint64_t seeds = sobolSeeds(scramble, pair);
         seedX_ = static_cast<uint32_t>(seeds), seedY_ = static_cast<uint32_t>(seeds >> 32);
-        // The shuffle of the order is an Owen scramble too: blocks of a power of two stay blocks.
-        shuffled_ = reverseBits(owenScramble(reverseBits(index), pcgHash(seedX_ ^ seedY_)));
+        shuffled_ = sobolShuffled(index, seedX_, seedY_);
     }
-    float x() const { return unitFloat(reverseBits(owenScramble(shuffled_, seedX_))); }
-    float y() const { return unitFloat(reverseBits(owenScramble(sobolSecondDigits(shuffled_), seedY_))); }
+    float x() const { return static_cast<float>(sobolX(shuffled_, seedX_)) * 0x1p-24f; }
+    float y() const { return static_cast<float>(sobolY(shuffled_, seedY_)) * 0x1p-24f; }
 
 private:
     uint32_t seedX_ = 0, seedY_ = 0, shuffled_ = 0;
@@ -131,6 +100,10 @@ Vec2 SampleStream::get2(uint32_t dimension) const {
     const SobolPair pair(index_, scramble_, dimension >> 1);
     if (kind_ == SamplerKind::Sobol) return {pair.x(), pair.y()};
     return {rotated(pair.x(), x_, y_, scramble_, dimension), rotated(pair.y(), x_, y_, scramble_, dimension + 1)};
+}
+
+const SamplerKernels& samplerKernels() {
+    return selectKernels(baseline::samplerTable(), v3::samplerTable(), v4::samplerTable());
 }
 
 }  // namespace lumi

@@ -23,6 +23,11 @@ public:
     float get1(uint32_t dimension) const;
     Vec2 get2(uint32_t dimension) const;
 
+    /// What names the numbers of a Sobol stream; see SamplerKernels.
+    bool isSobol() const { return kind_ == SamplerKind::Sobol; }
+    uint32_t scramble() const { return scramble_; }
+    uint32_t index() const { return index_; }
+
 private:
     SamplerKind kind_ = SamplerKind::Sobol;
     uint32_t scramble_ = 0;  ///< hash of key and seed; of the seed alone for BlueNoise

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "trace/texture_view.h"
 
 namespace lumi {
 namespace {
@@ -36,6 +37,37 @@ MaterialRecord makeMaterial(const Material& m) {
         for (int c = 0; c < 3; ++c)
             r.absorption[c] = -std::log(std::clamp(m.attenuationColor[c], 1e-6f, 1.0f)) / m.attenuationDistance;
     return r;
+}
+
+bool shareTaps(const Texture& a, const Texture& b) {
+    return a.wrapU == b.wrapU && a.wrapV == b.wrapV && a.offset == b.offset && a.scale == b.scale &&
+           a.rotation == b.rotation && a.image->levels.front().extent == b.image->levels.front().extent &&
+           a.image->levels.size() == b.image->levels.size();
+}
+
+/// Is the material plain? Then its textures are added.
+void addViews(MaterialRecord& r, std::vector<TextureView>& textures) {
+    constexpr uint32_t kViewed = MaterialRecord::kBaseColor | MaterialRecord::kMetallicRoughness | MaterialRecord::kNormal;
+    if (r.layered || r.emits || r.transmission > 0 || (r.textures & ~(kViewed | MaterialRecord::kEmission |
+                                                                     MaterialRecord::kTransmission)) != 0)
+        return;
+    const Texture* const all[] = {&r.source->baseColorTexture, &r.source->metallicRoughnessTexture,
+                                  &r.source->normalTexture};
+    const Texture* first = nullptr;
+    r.sharedTaps = true;
+    for (const Texture* t : all) {
+        if (!*t) continue;
+        if (!first) first = t;
+        if (!hasTextureView(*t) || (t->uvSet == 1) != (first->uvSet == 1)) return;
+        r.sharedTaps &= shareTaps(*first, *t);
+    }
+    r.plain = true;
+    r.uvSet = first && first->uvSet == 1 ? 1 : 0;
+    for (int i = 0; i < MaterialRecord::kViews; ++i) {
+        if (!*all[i]) continue;
+        r.views[i] = static_cast<int>(textures.size());
+        textures.push_back(makeTextureView(*all[i]));
+    }
 }
 
 float largestCoordinate(const Vec3* positions, size_t count) {
@@ -108,7 +140,9 @@ SceneTables makeSceneTables(const PosedScene& posed, const EmbreeScene& embree) 
             tables.instances[static_cast<size_t>(i)] = makeInstance(posed, embree, static_cast<uint32_t>(i));
     });
     for (const Material& material : scene.materials) tables.materials.push_back(makeMaterial(material));
-    if (tables.materials.empty()) tables.materials.push_back(makeMaterial(Material()));
+    static const Material kNone;
+    if (tables.materials.empty()) tables.materials.push_back(makeMaterial(kNone));
+    for (MaterialRecord& material : tables.materials) addViews(material, tables.textures);
     for (InstanceRecord& r : tables.instances) {
         // An index out of range shades with the first material.
         if (r.material >= tables.materials.size()) r.material = 0;
@@ -133,7 +167,7 @@ SceneTables makeSceneTables(const PosedScene& posed, const EmbreeScene& embree) 
 
 size_t SceneTables::byteCount() const {
     return instances.capacity() * sizeof(InstanceRecord) + materials.capacity() * sizeof(MaterialRecord) +
-           bodies.capacity() * sizeof(BodyRecord);
+           bodies.capacity() * sizeof(BodyRecord) + textures.capacity() * sizeof(TextureView);
 }
 
 }  // namespace lumi

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "scene/posed_scene.h"
@@ -29,7 +30,24 @@ struct InstanceRecord {
     Mat3 normalFromObject{1};
     const ShutterTrack* track = nullptr;  ///< where it is while the shutter is open; null: as above all the time
 
+    /// Triangles that stay where they are.
+    bool still() const { return body < 0 && !track; }
     uint32_t materialOf(uint32_t primitive) const { return triangleMaterial ? triangleMaterial[primitive] : material; }
+};
+
+/// An 8-bit texture that is filtered linearly, ready for lookups: see texture_view.h.
+struct TextureView {
+    struct Level {
+        const uint8_t* bytes = nullptr;  ///< RGBA
+        int width = 0, height = 0;
+    };
+    static constexpr int kMostLevels = 17;
+    std::array<Level, kMostLevels> levels;
+    int levelCount = 0;
+    Wrap wrapU = Wrap::Repeat, wrapV = Wrap::Repeat;
+    const float* decode = nullptr;              ///< linear values of the RGB codes; null: they are linear
+    Vec2 uvX{1, 0}, uvY{0, 1}, offset{0};       ///< rows of the map from mesh coordinates
+    float texelsPerUnit = 1;                    ///< of mesh coordinates, level 0
 };
 
 /// A material without what only its textures need.
@@ -50,6 +68,14 @@ struct MaterialRecord {
     Vec3 baseColor{1}, specularColor{1}, emission{0};
     Vec3 absorption{0};  ///< 1/m inside a solid (Beer-Lambert)
     const Material* source = nullptr;
+
+    /// Neither layers, transmission nor emission, and no textures but the three below, all of one uv set: vertices on it
+    /// are shaded by kernels.
+    bool plain = false;
+    bool sharedTaps = false;  ///< the three are alike but for their texels
+    int uvSet = 0;
+    enum View { kBaseColorView, kMetallicRoughnessView, kNormalView, kViews };
+    int views[kViews] = {-1, -1, -1};  ///< into SceneTables::textures; -1: no such texture
 };
 
 /// A light with a body, by index into Scene::lights.
@@ -71,6 +97,7 @@ struct SceneTables {
     std::vector<InstanceRecord> instances;
     std::vector<MaterialRecord> materials;
     std::vector<BodyRecord> bodies;
+    std::vector<TextureView> textures;
     size_t byteCount() const;
 };
 

@@ -239,15 +239,18 @@ Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, co
 }
 
 Vec3 restNormal(const SceneTables& tables, const Surface& s) {
-    const InstanceRecord& r = tables.instances[s.point.instance];
-    if (r.body >= 0) return s.normal;
-    const UVec3 t = r.triangles[s.point.primitive];
-    Vec3 rest = r.restNormals ? interpolate(r.restNormals, t, s.point.barycentrics) : Vec3(0);
+    return tables.instances[s.point.instance].body >= 0 ? s.normal : restNormal(tables, s.point, s.frontFace);
+}
+
+Vec3 restNormal(const SceneTables& tables, const SurfacePoint& point, bool frontFace) {
+    const InstanceRecord& r = tables.instances[point.instance];
+    const UVec3 t = r.triangles[point.primitive];
+    Vec3 rest = r.restNormals ? interpolate(r.restNormals, t, point.barycentrics) : Vec3(0);
     if (!r.restNormals) {
         const Vec3* p = r.restPositions;
         rest = glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x]);
     }
-    return unitOr(s.frontFace ? rest : -rest, Vec3(0, 1, 0));
+    return unitOr(frontFace ? rest : -rest, Vec3(0, 1, 0));
 }
 
 Vec3 triangleEmission(const SceneTables& tables, uint32_t instance, uint32_t primitive, Vec2 barycentrics) {

@@ -51,6 +51,8 @@ Surface evaluateSurface(const SceneTables& tables, const SurfacePoint& point, co
 
 /// Shading normal in object space in the mesh's rest pose, on wo's side, unit; normal maps left out.
 Vec3 restNormal(const SceneTables& tables, const Surface& surface);
+/// The same of a triangle's point, wo on its front side or behind.
+Vec3 restNormal(const SceneTables& tables, const SurfacePoint& point, bool frontFace);
 
 /// Unit smooth normal of the front face, normal maps left out.
 Vec3 smoothNormal(const SceneTables& tables, const SurfacePoint& point);

@@ -1,0 +1,228 @@
+// Vertices on plain surfaces: collected while a batch is shaded, and then shaded together by kernels.
+#include "base/isa.h"
+#include "math/hash.h"
+#include "trace/albedo_table.h"
+#include "trace/integrator.h"
+#include "trace/sampler_kernels.h"
+
+namespace lumi {
+
+const PlainKernels& plainKernels() {
+    return selectKernels(baseline::plainTable(), v3::plainTable(), v4::plainTable());
+}
+
+void Integrator::fillLane(PlainLanes& lanes, int i, uint32_t row, const PathState& path) const {
+    lanes.row[i] = row;
+    lanes.wo.set(i, -path.ray.direction);
+    lanes.throughput.set(i, path.throughput);
+    lanes.lobes[i] = (path.diffuseCount < settings_.maxDiffuseDepth ? PlainLanes::kDiffuseLobe : 0) |
+                     (path.specularCount < settings_.maxSpecularDepth ? PlainLanes::kSpecularLobe : 0);
+}
+
+/// A vertex whose surface the general way has found.
+void Integrator::addPlain(PathBatch& batch, uint32_t row, const Surface& surface) const {
+    PlainLanes& lanes = batch.plain;
+    const BsdfInputs& in = surface.inputs;
+    const int i = lanes.count++;
+    fillLane(lanes, i, row, batch.paths[batch.active[row]]);
+    lanes.position.set(i, surface.position);
+    lanes.geometricNormal.set(i, surface.geometricNormal);
+    lanes.normal.set(i, surface.normal);
+    lanes.offset[i] = surface.offset;
+    lanes.baseColor.set(i, in.baseColor);
+    lanes.specularColor.set(i, in.specularColor);
+    lanes.metallic[i] = in.metallic, lanes.roughness[i] = in.roughness;
+    lanes.ior[i] = in.ior, lanes.specular[i] = in.specular;
+}
+
+/// A hit whose surface the kernels find.
+void Integrator::collectPlain(PathBatch& batch, uint32_t row, const InstanceRecord& instance,
+                              const MaterialRecord& material) const {
+    PlainLanes& lanes = batch.plain;
+    const PathState& path = batch.paths[batch.active[row]];
+    const int i = lanes.count++;
+    fillLane(lanes, i, row, path);
+    lanes.width[i] = path.cone.width;
+    batch.taps[i].material = &material;
+    collectTriangle(instance, material, batch.hits[row], lanes, i);
+}
+
+/// Surfaces of what was collected.
+void Integrator::placePlain(PathBatch& batch, int depth) const {
+    PlainLanes& lanes = batch.plain;
+    if (lanes.count == 0) return;
+    const auto path = [&](int i) -> const PathState& { return batch.paths[batch.active[lanes.row[i]]]; };
+    plainKernels().place(lanes);
+    for (int i = 0; i < lanes.count; ++i)
+        if (batch.taps[i].material->textures != 0)
+            findTexels(scene_.tables, lanes, i, !path(i).diffuseBefore, batch.taps[i]);
+    for (int i = 0; i < lanes.count; ++i)
+        if (batch.taps[i].material->textures != 0) readTexels(scene_.tables, batch.taps[i], lanes, i);
+    plainKernels().bend(lanes);
+    if (settings_.regularize)
+        for (int i = 0; i < lanes.count; ++i)
+            if (path(i).diffuseBefore)
+                lanes.roughness[i] = std::max(lanes.roughness[i], settings_.leastRoughness(path(i).sample));
+    if (depth < needs_.vertexDepths)
+        for (int i = 0; i < lanes.count; ++i) describePlain(batch, i, depth, batch.vertices[lanes.row[i]]);
+}
+
+void Integrator::describePlain(const PathBatch& batch, int i, int depth, PathVertex& vertex) const {
+    const PlainLanes& lanes = batch.plain;
+    const PathState& path = batch.paths[batch.active[lanes.row[i]]];
+    const RawHit& hit = batch.hits[lanes.row[i]];
+    vertex.point = {hit.instance, hit.primitive, {hit.u, hit.v}, path.ray.time};
+    vertex.position = lanes.position.get<Vec3>(i);
+    vertex.geometricNormal = lanes.geometricNormal.get<Vec3>(i);
+    vertex.normal = lanes.normal.get<Vec3>(i);
+    if (depth < needs_.normalDepths) vertex.objectNormal = restNormal(scene_.tables, vertex.point, lanes.front[i] > 0);
+    vertex.wo = lanes.wo.get<Vec3>(i);
+    vertex.distance = hit.distance;
+    vertex.material = static_cast<uint32_t>(batch.taps[i].material - scene_.tables.materials.data());
+    vertex.roughness = std::clamp(lanes.roughness[i], 0.0f, 1.0f);
+    vertex.cone = path.cone;
+    vertex.throughput = path.throughput;
+}
+
+void Integrator::drawNumbers(PathBatch& batch, int depth, bool lights, bool roulette) const {
+    PlainLanes& lanes = batch.plain;
+    struct Use {
+        uint32_t use;
+        float *x, *y;
+        bool wanted;
+    };
+    const Use uses[] = {{dimension::kLobe, lanes.lobeX, nullptr, true},
+                        {dimension::kBsdf, lanes.bsdfX, lanes.bsdfY, true},
+                        {dimension::kLight, lanes.lightX, lanes.lightY, lights && scene_.lights.count() > 1},
+                        {dimension::kLightPoint, lanes.lightPointX, lanes.lightPointY, lights},
+                        {dimension::kRoulette, lanes.rouletteX, nullptr, roulette}};
+    const auto stream = [&](int i) -> const SampleStream& { return batch.paths[batch.active[lanes.row[i]]].stream; };
+    const bool sobol = settings_.sampler == SamplerKind::Sobol;
+    if (sobol)
+        for (int i = 0; i < lanes.count; ++i) lanes.scramble[i] = stream(i).scramble(), lanes.index[i] = stream(i).index();
+    for (const Use& use : uses) {
+        if (!use.wanted) continue;
+        const uint32_t at = dimension::vertex(depth, use.use);
+        if (sobol) {
+            samplerKernels().pairs(lanes.scramble, lanes.index, lanes.count, at >> 1, lanes.seeds, use.x, use.y);
+            continue;
+        }
+        for (int i = 0; i < lanes.count; ++i) {
+            const Vec2 pair = stream(i).get2(at);
+            use.x[i] = pair.x;
+            if (use.y) use.y[i] = pair.y;
+        }
+    }
+    if (!roulette) std::fill_n(lanes.rouletteX, lanes.count, 0.0f);
+}
+
+void Integrator::shadePlain(PathBatch& batch, int depth) const {
+    PlainLanes& lanes = batch.plain;
+    if (lanes.count == 0) return;
+    const bool lastRay = depth + 1 >= settings_.maxDepth && depth + 1 >= needs_.vertexDepths;
+    const bool goesOn = !lastRay || scene_.lights.hittable();
+    const AlbedoView albedos = SchlickAlbedo::get().view();
+    const PlainSettings settings{settings_.multipleScattering, settings_.strategy == DirectStrategy::Mis,
+                                 settings_.roulette && depth + 1 >= settings_.rouletteDepth};
+    drawNumbers(batch, depth, usesLightSamples_, settings.roulette);
+    const PlainKernels& kernels = plainKernels();
+    kernels.prepare(lanes, albedos, settings);
+    if (depth < needs_.albedoDepths)
+        for (int i = 0; i < lanes.count; ++i) {
+            PathVertex& vertex = batch.vertices[lanes.row[i]];
+            vertex.albedo = lanes.diffuseAlbedo.get<Vec3>(i);
+            vertex.specularAlbedo = lanes.specularAlbedo.get<Vec3>(i);
+        }
+    if (usesLightSamples_) {
+        samplePlainLights(batch, depth);
+        kernels.light(lanes, albedos, settings);
+        pendPlainLights(batch, depth);
+    }
+    if (goesOn) {
+        kernels.scatter(lanes, albedos, settings);
+        for (int i = 0; i < lanes.count; ++i)
+            if (lanes.next[i] != PlainLanes::kEnds) continuePlain(batch, i, depth, lastRay);
+    }
+    lanes.count = 0;
+}
+
+void Integrator::samplePlainLights(PathBatch& batch, int depth) const {
+    PlainLanes& lanes = batch.plain;
+    for (int i = 0; i < lanes.count; ++i) {
+        lanes.lightPdf[i] = 0;
+        if (lanes.smooth[i] > 0 && lanes.diffuseProbability[i] == 0) continue;
+        const PathState& path = batch.paths[batch.active[lanes.row[i]]];
+        const LightReceiver receiver{lanes.position.get<Vec3>(i), lanes.geometricNormal.get<Vec3>(i), path.ray.time,
+                                     LightReceiver::Facing::Front, settings_.lightSampling};
+        LightSample& light = batch.lights[i];
+        if (!scene_.lights.sample(receiver, {lanes.lightX[i], lanes.lightY[i]},
+                                  {lanes.lightPointX[i], lanes.lightPointY[i]}, light))
+            continue;
+        if (settings_.strategy == DirectStrategy::Bsdf && light.hittable) continue;
+        // The sky's radiance is looked up when the shadow ray has found it: most samples never wait for that memory.
+        Vec3 radiance = light.sky ? Vec3(1) : light.radiance;
+        if (!isBlack(path.absorption) && std::isfinite(light.distance))
+            radiance *= transmittance(path.absorption, light.distance);
+        lanes.lightPdf[i] = light.pdf;
+        lanes.lightDirection.set(i, light.direction);
+        lanes.lightTarget.set(i, light.target);
+        lanes.lightRadiance.set(i, radiance);
+        lanes.lightDistance[i] = light.distance;
+        lanes.lightWeighs[i] = light.hittable ? 1.0f : 0.0f;
+    }
+}
+
+void Integrator::pendPlainLights(PathBatch& batch, int depth) const {
+    const PlainLanes& lanes = batch.plain;
+    for (int i = 0; i < lanes.count; ++i) {
+        if (lanes.lightValid[i] == 0) continue;
+        if (lanes.lightValid[i] < 0) {
+            ++batch.nonFinite;
+            continue;
+        }
+        const uint32_t index = batch.active[lanes.row[i]];
+        const PathState& path = batch.paths[index];
+        const LightSample& light = batch.lights[i];
+        if (depth < needs_.vertexDepths) {
+            PathVertex& vertex = batch.vertices[lanes.row[i]];
+            vertex.lightSampled = true;
+            vertex.lightPosition = light.position;
+            vertex.light = light.light;
+        }
+        batch.pending.push_back({index, lanes.lightContribution.get<Vec3>(i), lanes.lightDiffuse.get<Vec3>(i),
+                                 lanes.lightSpecular.get<Vec3>(i), light.sky, light.skyPlace});
+        batch.shadowRays.push_back({lanes.start.get<Vec3>(i), 0, lanes.shadowDirection.get<Vec3>(i), lanes.shadowLength[i],
+                                    path.ray.time, pcgHash(path.hash + static_cast<uint32_t>(2 * depth + 1))});
+    }
+}
+
+void Integrator::continuePlain(PathBatch& batch, int i, int depth, bool lastRay) const {
+    const PlainLanes& lanes = batch.plain;
+    PathState& path = batch.paths[batch.active[lanes.row[i]]];
+    const bool delta = lanes.next[i] == PlainLanes::kMirrors, diffuse = lanes.next[i] == PlainLanes::kDiffuse;
+    // Nothing that the last ray could find.
+    if (lastRay && settings_.strategy == DirectStrategy::Light && !delta) return;
+    const Vec3 direction = lanes.nextDirection.get<Vec3>(i), weight = lanes.weight.get<Vec3>(i);
+    if (depth < needs_.vertexDepths) {
+        PathVertex& vertex = batch.vertices[lanes.row[i]];
+        vertex.sampledLobe = diffuse ? Lobe::Diffuse : Lobe::SpecularReflection;
+        vertex.wi = direction;
+        vertex.weight = weight;
+        vertex.pdf = lanes.pdf[i];
+        if (depth < needs_.shareDepths && !delta) vertex.diffuseShare = lanes.diffuseShare.get<Vec3>(i);
+    }
+    path.throughput *= weight;
+    path.scatter = {lanes.position.get<Vec3>(i), lanes.geometricNormal.get<Vec3>(i), path.ray.time,
+                    LightReceiver::Facing::Front, settings_.lightSampling};
+    path.scatterPdf = lanes.pdf[i];
+    ++(diffuse ? path.diffuseCount : path.specularCount);
+    path.diffuseBefore |= diffuse;
+    path.cone.spread = std::max(path.cone.spread, spreadOf(diffuse, lanes.roughness[i]));
+    path.ray.origin = lanes.start.get<Vec3>(i);
+    path.ray.direction = direction;
+    path.ray.tmin = 0;
+    path.ray.tmax = kInfinity;
+    path.alive = true;
+}
+
+}  // namespace lumi
