@@ -2,7 +2,7 @@
 # Writes a source with the SHA-256 of all code in the folders that decide what a sample is worth; the file is left alone
 # if that has not changed.
 set(text "")
-foreach(folder base math image params scene frame trace)
+foreach(folder base math image params scene frame trace reference)
   file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${folder}/*.cpp ${ROOT}/${folder}/*.h)
   list(SORT files)
   foreach(name IN LISTS files)

@@ -84,8 +84,8 @@ Reference makeReference(const ReferenceSpec& spec, const ReferenceGoal& goal, co
 /// `$XDG_CACHE_HOME/lumiscope/references`, else `~/.cache/lumiscope/references`; empty if neither is set.
 std::filesystem::path defaultReferenceCache();
 
-/// Name under which the cache keeps references of this spec: a digest of the spec, the instruction set in use and the
-/// sources that the image depends on.
+/// Name under which the cache keeps references of this spec: a digest of the spec, the instruction set in use, the sources
+/// that the image depends on, and the compiler, its flags and the libraries.
 std::string referenceKey(const ReferenceSpec& spec);
 
 }  // namespace lumi

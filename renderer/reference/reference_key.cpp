@@ -1,6 +1,7 @@
 #include "reference/reference_key.h"
 
 #include <fmt/format.h>
+#include <gnu/libc-version.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -66,7 +67,8 @@ std::string referenceKeyText(const ReferenceSpec& spec) {
                 {"jitter", static_cast<int>(spec.jitter)},
                 {"isa", isaName(activeIsa())},
                 {"sources", kSourceDigest},
-                {"toolchain", kToolchain}}
+                {"toolchain", kToolchain},
+                {"libc", gnu_get_libc_version()}}  // its sines and cosines
         .dump();
 }
 

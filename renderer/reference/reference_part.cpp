@@ -65,19 +65,23 @@ std::vector<Part> orderedParts(std::span<const fs::path> files) {
     return parts;
 }
 
+/// Is the part there already? Throws Error(Usage) if something else has its name.
+bool partThere(const fs::path& file, const std::string& key, SampleRange range, const std::string& note) {
+    std::error_code failure;
+    if (!fs::exists(file, failure)) return false;
+    SampleRange present;
+    const ReferenceState head = readReferenceHead(file, &present);
+    if (head.key == key && present == range && head.note == note) return true;
+    throwUsage({"exists already", file.string(), "a new file, or one of the same samples of the same image",
+                "samples " + rangeText(present)});
+}
+
 }  // namespace
 
 void makeReferencePart(const ReferenceSpec& spec, SampleRange range, const fs::path& file, const std::string& note,
                        const ReferenceOptions& options) {
     const std::string key = referenceKeyText(spec);
-    std::error_code failure;
-    if (fs::exists(file, failure)) {
-        SampleRange present;
-        const ReferenceState head = readReferenceHead(file, &present);
-        if (head.key == key && present == range && head.note == note) return;
-        throwUsage({"exists already", file.string(), "a new file, or one of the same samples of the same image",
-                    "samples " + rangeText(present)});
-    }
+    if (partThere(file, key, range, note)) return;
     const fs::path partial = file.string() + ".partial";
     ReferenceState state;
     if (!resume(partial, key, range, state, options.log)) {
@@ -92,7 +96,9 @@ void makeReferencePart(const ReferenceSpec& spec, SampleRange range, const fs::p
     if (state.depth.empty()) state.depth = tracer.traceDepth();
     const uint64_t resumed = state.blocks.range().count();
     if (resumed < range.count()) runner.advanceTo(range.begin, range.end, {0, range.count(), resumed, 0, false});
-    writeReferenceFile(file, state);
+    // Another process may have taken the name meanwhile: what it wrote is not written over.
+    if (!partThere(file, key, range, note)) writeReferenceFile(file, state);
+    std::error_code failure;
     fs::remove(partial, failure);
 }
 

@@ -1,4 +1,5 @@
 // References of a tiny scene: the same bits by every way, and what is said of their noise is true.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -157,6 +158,60 @@ TEST(Reference, TheKeyCoversWhateverChangesTheImage) {
     EXPECT_EQ(keys.size(), 10u);
     EXPECT_EQ(referenceKey(tinySpec()), referenceKey(spec));
     EXPECT_NE(referenceKeyText(spec).find("\"sources\":\""), std::string::npos);
+}
+
+/// Every member of the settings and of a pose stands in the key. A new one makes these sizes change: add it to the key,
+/// then here.
+TEST(Reference, TheKeyHasEverySettingAndEveryMemberOfThePose) {
+    const ReferenceSpec spec = tinySpec();
+    EXPECT_EQ(sizeof(CameraPose), 2 * sizeof(Mat4) + 9 * sizeof(float));
+    std::set<std::string> keys{referenceKey(spec)};
+    size_t variants = 1;
+    const auto differs = [&](const ReferenceSpec& other) { keys.insert(referenceKey(other)), ++variants; };
+    ReferenceSpec other = spec;
+    const auto pose = [&](auto change) { other = spec, change(other.camera), differs(other); };
+    pose([](CameraPose& c) { c.worldFromCamera[3][0] += 1; });
+    pose([](CameraPose& c) { c.projection = Projection::Orthographic; });
+    pose([](CameraPose& c) { c.halfHeight *= 2; });
+    pose([](CameraPose& c) { c.aperture = 1; });
+    pose([](CameraPose& c) { c.focus *= 2; });
+    pose([](CameraPose& c) { c.blades = 5; });
+    pose([](CameraPose& c) { c.bladeRotation = 1; });
+    other = spec, other.openSeconds = 0.1f, differs(other);  // what the pose's shutter comes to
+    other = spec, other.cameraTrack = {spec.camera, spec.camera}, differs(other);
+    PathSettings path;
+    for (const ParameterInfo& info : listParameters([&](ParameterVisitor& v) { path.describe(v); })) {
+        other = spec;
+        const Describe describe = [&](ParameterVisitor& v) { other.path.describe(v); };
+        std::vector<std::string> texts = info.options;
+        if (info.type == ParameterType::Toggle) texts = {"true", "false"};
+        if (info.type == ParameterType::Number || info.type == ParameterType::Integer)
+            texts = {fmt::format("{}", info.min), fmt::format("{}", info.max)};
+        const std::string present = referenceKeyText(spec);
+        bool seen = false;
+        for (const std::string& text : texts) {
+            setParameter(describe, info.id, parseParameter(info, text, ""), "");
+            seen = seen || referenceKeyText(other) != present;
+        }
+        EXPECT_TRUE(seen) << info.id;
+    }
+    EXPECT_EQ(keys.size(), variants);
+}
+
+TEST(Reference, APartThatAnotherProcessWroteMeanwhileIsNotWrittenOver) {
+    const test::TemporaryFolder folder;
+    makeReferencePart(tinySpec(), {16, 48}, folder / "theirs", "", {});
+    const auto meanwhile = [&](SampleRange range) {
+        ReferenceOptions options;
+        options.progress = [&](const ReferenceProgress&) {
+            std::filesystem::copy_file(folder / "theirs", folder / "same", std::filesystem::copy_options::skip_existing);
+        };
+        std::filesystem::remove(folder / "same");
+        makeReferencePart(tinySpec(), range, folder / "same", "", options);
+    };
+    test::expectError(ErrorKind::Usage, [&] { meanwhile({0, 32}); }, {"exists", "16..48"});
+    meanwhile({16, 48});
+    EXPECT_EQ(readFile(folder / "same"), readFile(folder / "theirs"));
 }
 
 TEST(Reference, AnErrorAsGoalStopsAtTheFirstStepThatReachesIt) {
