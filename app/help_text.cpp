@@ -74,12 +74,17 @@ std::string benchFooter() {
     return "Examples:\n"
            "  lumiscope bench                              everything; some minutes\n"
            "  lumiscope bench --filter trace/path\n"
-           "  lumiscope bench --filter 'sponza$' --json\n\n"
+           "  lumiscope bench --filter 'sponza$' --json\n"
+           "  lumiscope bench --filter '^(metric|filter)/'\n"
+           "  lumiscope list benches                       the names of all entries\n\n"
            "trace/primary, bounce, shadow and path: Mray/s; the limit is one call of Embree a ray over the same rays.\n"
            "trace/frame: frames a second at 640x360, one sample a pixel, one bounce; the limit is its bare rays.\n"
            "trace/embree-pathtracer: Mray/s; the limit is Embree's own path tracer (Debian's embree-tools).\n"
            "load, build: seconds to read a scene and to make it ready for rays. memory: peak of loading and rendering;\n"
-           "the limit is twice what scene and tracer hold. Sponza is measured where $LUMISCOPE_ASSETS holds it.\n";
+           "the limit is twice what scene and tracer hold. Sponza is measured where $LUMISCOPE_ASSETS holds it.\n"
+           "metric/ID: Mpixel/s on 1920x1080. filter/MODULE, filter/MODULE/STAGE: frames a second at 1280x720. The limit of\n"
+           "both streams what they read through memory once, in the same run; memory/metric/ID and memory/filter/MODULE tell\n"
+           "their peak memory beside it. Medians of 5 to 25 runs; spread is (slowest - fastest) / median.\n";
 }
 
 std::string referenceFooter() {

@@ -9,6 +9,7 @@
 #include "measure/temporal.h"
 #include "params/json.h"
 #include "reconstruct/catalog.h"
+#include "study/bench.h"
 #include "study/study_file.h"
 
 namespace lumi {
@@ -55,6 +56,16 @@ void listStudyTable(const MachineOptions& machine) {
         std::string presets;
         for (const std::string& preset : study.presets) presets += (presets.empty() ? "" : ", ") + preset;
         rows.push_back({study.name, presets.empty() ? "-" : presets, study.title});
+    }
+    print(machine, all, rows);
+}
+
+void listBenches(const MachineOptions& machine) {
+    json all = json::array();
+    std::vector<Row> rows;
+    for (const BenchEntry& entry : benchEntries()) {
+        all.push_back({{"id", entry.name}, {"title", entry.what}});
+        rows.push_back({entry.name, entry.what});
     }
     print(machine, all, rows);
 }
@@ -193,6 +204,7 @@ int runList(const ListOptions& options, const MachineOptions& machine) {
     else if (options.what == "buffers") listBuffers(options.module, machine);
     else if (options.what == "metrics") listMetrics(machine);
     else if (options.what == "studies") listStudyTable(machine);
+    else if (options.what == "benches") listBenches(machine);
     else listParameterTable(options.module, machine);
     return 0;
 }

@@ -37,10 +37,10 @@ private:
 class ListSubcommand : public Subcommand {
 public:
     ListSubcommand(CLI::App& parent, CommandLine& line)
-        : Subcommand(parent, line, "list", "List what there is: scenes, modules, buffers, parameters, metrics, studies") {
-        app_->add_option("what", line_.list.what, "scenes, modules, buffers, parameters, metrics or studies")
+        : Subcommand(parent, line, "list", "List what there is: scenes, modules, buffers, parameters, metrics, studies, benches") {
+        app_->add_option("what", line_.list.what, "scenes, modules, buffers, parameters, metrics, studies or benches")
             ->required()->type_name("WHAT")
-            ->check(oneOf({"scenes", "modules", "buffers", "parameters", "metrics", "studies"}));
+            ->check(oneOf({"scenes", "modules", "buffers", "parameters", "metrics", "studies", "benches"}));
         app_->add_option("--module", line_.list.module, "Only what belongs to this module")->type_name("INSTANCE");
         addMachine(*app_, line_.machine, false);
         app_->footer("Examples:\n  lumiscope list parameters --module accumulate\n  lumiscope list buffers --json");

@@ -32,7 +32,7 @@ void addCameraPath(CLI::App& app, SceneOptions& scene) {
 
 void addMachine(CLI::App& app, MachineOptions& machine, bool computes) {
     app.add_flag("--json", machine.json, "Print the result as one JSON value on standard output");
-    app.add_flag("--quiet", machine.quiet, "Print nothing but errors");
+    app.add_flag("--quiet", machine.quiet, "Say nothing on standard error but errors; results are printed all the same");
     if (!computes) return;
     app.add_option("--threads", machine.threads, "Threads to use (one for each core); never changes the image")
         ->type_name("N")

@@ -32,7 +32,7 @@ private:
 class BenchSubcommand : public Subcommand {
 public:
     BenchSubcommand(CLI::App& parent, CommandLine& line)
-        : Subcommand(parent, line, "bench", "Measure this machine's speed against bare Embree") {
+        : Subcommand(parent, line, "bench", "Measure speed and memory against bare Embree and memory bandwidth") {
         app_->add_option("--filter", line_.filter, "Only entries in whose name this regular expression is found")
             ->type_name("RE")->take_last();
         addMachine(*app_, line_.machine, true);

@@ -2,6 +2,7 @@
 #include <functional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "base/messages.h"
 
@@ -24,6 +25,12 @@ struct BenchOptions {
     std::stop_token stop;
 };
 
+/// Names of what this machine can measure, with what that is, in the order of running.
+struct BenchEntry {
+    std::string name, what;
+};
+std::vector<BenchEntry> benchEntries();
+
 /// Runs the entries that the filter leaves and hands each result on as it is there. Throws Error(Usage) if the filter is
 /// no regular expression or leaves nothing, Error(Interrupted) if stopped. Entries, where this machine has what they need:
 ///   trace/primary|bounce|shadow/<scene>: our ray functions over the rays that a frame traces, in Mray/s. The limit is
@@ -34,11 +41,11 @@ struct BenchOptions {
 ///     `pathtracer` reports for the same file, camera, light, size and path length (Debian's embree-tools).
 ///   load/<scene>, build/<scene>: seconds to read a scene, and to make it ready for rays.
 ///   memory/<scene>: peak of a program that loads and renders it; the limit is twice what scene and tracer hold.
-///   metric/<id>: megapixels a second on a 1920x1080 pair; the limit streams both images through memory once.
+///   metric/<id>: megapixels a second on a 1920x1080 pair; the limit streams what it reads through memory once.
 ///   filter/<module>: frames a second at 1280x720 on one traced frame with full history, then filter/<module>/<stage>; the
 ///     limit streams what the module reads and its image through memory once.
-///   memory/metric/<id>, memory/filter/<module>: follow these; what the first allocates and what the second keeps, held
-///     against the bytes of the streams.
+///   memory/metric/<id>, memory/filter/<module>: follow these; what they hold at their peak, held against the bytes of the
+///     streams. A module's stages share its memory.
 /// Traced frames are 640x360, and times are medians of runs that alternate between what is measured and its limit.
 void runBench(const BenchOptions& options, MessageLog& log, const std::function<void(const BenchResult&)>& onResult);
 

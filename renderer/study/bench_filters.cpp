@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "base/memory.h"
 #include "reconstruct/catalog.h"
+#include "study/bench_memory.h"
 #include "study/bench_metrics.h"
 #include "study/bench_scene.h"
 #include "study/bench_timing.h"
@@ -69,12 +71,14 @@ std::vector<std::string> benchedModules() {
 
 void FilterBench::run(const std::string& id, const BenchOutput& output) {
     if (!frame_) frame_ = std::make_unique<ModuleBench>(loadBenchScene(*benchSceneFile("atrium"), log_, stop_), stop_);
+    const MemoryPeak peak;
     const std::unique_ptr<Module> module = findModule(id).make();
     module->resize(kFilterExtent);
     Image out;
     FrameNumber frame = 0;
     StageTimer warm;
     while (frame < kWarmUp) frame_->run(*module, frame++, warm, out);
+    const std::optional<uint64_t> held = peak.bytes();
 
     const size_t bytes = bytesOf(frame_->signals(), module->reads()) + out.bytes();
     MemoryStream stream(bytes);
@@ -90,7 +94,8 @@ void FilterBench::run(const std::string& id, const BenchOutput& output) {
     output({"filter/" + id, 1000 / times.own.median(), "frame/s", times.own.median(), times.own.spread(), limit});
     for (const auto& [stage, own] : stages)
         output({"filter/" + id + "/" + stage, 1000 / std::max(own.median(), 1e-6), "frame/s", own.median(), own.spread(), limit});
-    output({"memory/filter/" + id, static_cast<double>(module->byteCount()) / kMiB, "MiB", 0, 0, static_cast<double>(bytes) / kMiB});
+    const uint64_t most = std::max(held.value_or(0), static_cast<uint64_t>(module->byteCount()));
+    output({"memory/filter/" + id, static_cast<double>(most) / kMiB, "MiB", 0, 0, static_cast<double>(bytes) / kMiB});
 }
 
 }  // namespace lumi

@@ -1,25 +1,19 @@
 #include "study/bench_metrics.h"
 
-#include <malloc.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <fstream>
-#include <numeric>
 #include <optional>
 #include <string>
 
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "math/hash.h"
-#include "measure/measure.h"
+#include "measure/lag.h"
+#include "measure/temporal.h"
+#include "study/bench_memory.h"
 #include "study/bench_timing.h"
 
 namespace lumi {
 namespace {
 
 constexpr Extent2 kMetricExtent{1920, 1080};
-constexpr int64_t kStreamGrain = 1 << 16;
 constexpr double kMiB = 1024 * 1024;
 
 /// A smooth image with noise on it, always the same.
@@ -37,74 +31,67 @@ Image noisyImage(float noise) {
     return image;
 }
 
-/// The highest resident size of the process since it was made, above what it had then.
-class MemoryPeak {
+/// Everything that a metric may look at, and how it is run on it.
+class MetricRun {
 public:
-    MemoryPeak() {
-        malloc_trim(0);
-        std::ofstream reset("/proc/self/clear_refs");
-        reset << "5" << std::flush;  // forgets the peak: proc(5)
-        good_ = reset.good();
-        before_ = residentBytes();
+    explicit MetricRun(const std::string& id) : pair_{noisyImage(0.1f), noisyImage(0), {}, 0} {
+        pair_.prepare();
+        bytes_ = pair_.image.bytes() + pair_.reference.bytes();
+        if (id == "temporal") run_ = [this] { measureTemporal({pair_.image, pair_.reference}, false); };
+        else if (id == "temporal_reprojected") followMotion();
+        else if (id == "lag") followStep();
+        else run_ = [this, &metric = findMetric(id)] { metric.measure(pair_, false); };
     }
-    /// Nothing where the system does not tell.
-    std::optional<uint64_t> bytes() const {
-        std::ifstream status("/proc/self/status");
-        for (std::string line; good_ && std::getline(status, line);)
-            if (line.starts_with("VmHWM:")) {
-                const uint64_t peak = std::strtoull(line.c_str() + 6, nullptr, 10) * 1024;
-                return peak > before_ ? peak - before_ : 0;
-            }
-        return std::nullopt;
-    }
+    void run() const { run_(); }
+    /// Of what the metric reads.
+    size_t bytes() const { return bytes_; }
 
 private:
-    bool good_ = false;
-    uint64_t before_ = 0;
+    /// A camera that moves by half a pixel a frame, past one flat thing.
+    void followMotion() {
+        motion_ = Image(kMetricExtent, 3), depth_ = Image(kMetricExtent, 1);
+        for (int64_t i = 0; i < kMetricExtent.area(); ++i) motion_.data()[i] = 0.5f;
+        depth_.fill(4);
+        bytes_ += motion_.bytes() + 2 * depth_.bytes();
+        run_ = [this] {
+            TemporalPair pair{pair_.image, pair_.reference};
+            pair.motion = &motion_, pair.depth = pair.previousDepth = &depth_;
+            measureReprojectedTemporal(pair, false);
+        };
+    }
+    void followStep() {
+        meter_.emplace(pair_.reference, pair_.image);
+        run_ = [this] { meter_->add(pair_.image); };
+    }
+
+    ImagePair pair_;
+    Image motion_, depth_;
+    std::optional<LagMeter> meter_;
+    size_t bytes_ = 0;
+    std::function<void()> run_;
 };
 
 }  // namespace
 
-MemoryStream::MemoryStream(size_t bytes) : values_(std::max<size_t>(bytes / sizeof(float), 1), 1.0f) {
-    const int64_t count = static_cast<int64_t>(values_.size());
-    sums_.resize(static_cast<size_t>((count + kStreamGrain - 1) / kStreamGrain));
-}
-
-void MemoryStream::run() {
-    parallelRanges(static_cast<int64_t>(values_.size()), kStreamGrain, [&](int64_t begin, int64_t end) {
-        // Eight sums side by side keep the loop waiting for memory, not for additions.
-        float sums[8] = {};
-        int64_t i = begin;
-        for (; i + 8 <= end; i += 8)
-            for (int64_t k = 0; k < 8; ++k) sums[k] += values_[static_cast<size_t>(i + k)];
-        for (; i < end; ++i) sums[0] += values_[static_cast<size_t>(i)];
-        sums_[static_cast<size_t>(begin / kStreamGrain)] = std::accumulate(sums, sums + 8, 0.0);
-    });
-    sum_ = std::accumulate(sums_.begin(), sums_.end(), 0.0);
-}
-
 std::vector<std::string> benchedMetrics() {
     std::vector<std::string> ids;
     for (const Metric& metric : metricCatalog()) ids.emplace_back(metric.id);
+    for (const SequenceMetric& metric : sequenceMetricCatalog()) ids.emplace_back(metric.id);
     return ids;
 }
 
 void benchMetric(const std::string& id, const std::string& name, const std::stop_token& stop, const BenchOutput& output) {
-    const Metric& metric = findMetric(id);
-    ImagePair pair{noisyImage(0.1f), noisyImage(0), {}, 0};
-    pair.prepare();
-    const size_t bytes = pair.image.bytes() + pair.reference.bytes();
-    MemoryStream stream(bytes);
-    const auto own = [&] { metric.measure(pair, false); };
+    const MetricRun metric(id);
+    MemoryStream stream(metric.bytes());
     const MemoryPeak peak;
-    own();
+    metric.run();
     const std::optional<uint64_t> allocated = peak.bytes();
-    const PairedTimes times = timeInTurn(own, [&] { stream.run(); }, stop);
+    const PairedTimes times = timeInTurn([&] { metric.run(); }, [&] { stream.run(); }, stop);
     const double megapixels = static_cast<double>(kMetricExtent.area()) / 1e6;
     output({name, megapixels / times.own.median() * 1000, "Mpixel/s", times.own.median(), times.own.spread(),
             megapixels / times.limit.median() * 1000});
     if (!allocated) return;
-    output({"memory/" + name, static_cast<double>(*allocated) / kMiB, "MiB", 0, 0, static_cast<double>(bytes) / kMiB});
+    output({"memory/" + name, static_cast<double>(*allocated) / kMiB, "MiB", 0, 0, static_cast<double>(metric.bytes()) / kMiB});
 }
 
 }  // namespace lumi

@@ -10,8 +10,9 @@ class ModuleBench;
 
 using BenchOutput = std::function<void(const BenchResult&)>;
 
-/// One metric over a 1920x1080 pair, in Mpixel/s. The limit streams both images through memory once, in the same run.
-/// `memory/metric/<id>` follows: what the metric allocates at its peak, held against the two images.
+/// One metric, of images or of frames, over a 1920x1080 pair, in Mpixel/s. The limit streams what it reads through memory
+/// once, in the same run.
+/// `memory/metric/<id>` follows: what the metric allocates at its peak, held against the same bytes.
 void benchMetric(const std::string& id, const std::string& name, const std::stop_token& stop, const BenchOutput& output);
 
 /// Modules on one traced frame that comes again and again, with all their history: 1280x720.
@@ -21,8 +22,8 @@ public:
     ~FilterBench();
 
     /// `filter/<module>` in frames a second, then `filter/<module>/<stage>` for each of its stages; the limit streams the
-    /// signals that it reads and its image through memory once. `memory/filter/<module>` tells what it keeps, held against
-    /// the same bytes.
+    /// signals that it reads and its image through memory once. `memory/filter/<module>` tells what it holds at its peak
+    /// (history, scratch and its image, whichever stage needs most), held against the same bytes.
     void run(const std::string& module, const BenchOutput& output);
 
 private:
@@ -34,19 +35,5 @@ private:
 /// Ids that the two know: metrics of the catalogue; modules that filter (all but those that only hand frames on).
 std::vector<std::string> benchedMetrics();
 std::vector<std::string> benchedModules();
-
-/// Reads `bytes` bytes of memory once on all threads: the least that any filter over so much data can take.
-class MemoryStream {
-public:
-    explicit MemoryStream(size_t bytes);
-    void run();
-    /// Of what was read, so that no reading is left out.
-    double sum() const { return sum_; }
-
-private:
-    std::vector<float> values_;
-    std::vector<double> sums_;
-    double sum_ = 0;
-};
 
 }  // namespace lumi
