@@ -1,15 +1,10 @@
 // Vertices on plain surfaces: collected while a batch is shaded, and then shaded together by kernels.
-#include "base/isa.h"
 #include "math/hash.h"
 #include "trace/albedo_table.h"
 #include "trace/integrator.h"
 #include "trace/sampler_kernels.h"
 
 namespace lumi {
-
-const PlainKernels& plainKernels() {
-    return selectKernels(baseline::plainTable(), v3::plainTable(), v4::plainTable());
-}
 
 void Integrator::fillLane(PlainLanes& lanes, int i, uint32_t row, const PathState& path) const {
     lanes.row[i] = row;

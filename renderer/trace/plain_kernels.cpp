@@ -4,7 +4,6 @@
 #include "trace/lane_math.h"
 
 namespace lumi::LUMI_ISA {
-const PlainKernels& plainTable();
 namespace {
 
 constexpr float kLeastCosine = 1e-4f, kLeastLobeShare = 0.05f, kLeastLoss = 1e-7f, kBelowOne = 0x1.fffffep-1f;

@@ -1,4 +1,5 @@
 #pragma once
+#include "base/isa.h"
 #include "trace/albedo_view.h"
 #include "trace/plain_lanes.h"
 
@@ -23,16 +24,6 @@ struct PlainKernels {
     void (*scatter)(PlainLanes& lanes, const AlbedoView& albedos, const PlainSettings& settings);
 };
 
-const PlainKernels& plainKernels();
-
-namespace baseline {
-const PlainKernels& plainTable();
-}
-namespace v3 {
-const PlainKernels& plainTable();
-}
-namespace v4 {
-const PlainKernels& plainTable();
-}
+LUMI_KERNELS(PlainKernels, plain)
 
 }  // namespace lumi

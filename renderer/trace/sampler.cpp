@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "base/isa.h"
 #include "trace/blue_noise.h"
 #include "trace/sampler_kernels.h"
 #include "trace/sobol.h"
@@ -100,10 +99,6 @@ Vec2 SampleStream::get2(uint32_t dimension) const {
     const SobolPair pair(index_, scramble_, dimension >> 1);
     if (kind_ == SamplerKind::Sobol) return {pair.x(), pair.y()};
     return {rotated(pair.x(), x_, y_, scramble_, dimension), rotated(pair.y(), x_, y_, scramble_, dimension + 1)};
-}
-
-const SamplerKernels& samplerKernels() {
-    return selectKernels(baseline::samplerTable(), v3::samplerTable(), v4::samplerTable());
 }
 
 }  // namespace lumi

@@ -3,7 +3,6 @@
 #include "trace/sobol.h"
 
 namespace lumi::LUMI_ISA {
-const SamplerKernels& samplerTable();
 namespace {
 
 inline float unitOf(uint32_t bits24) { return static_cast<float>(static_cast<int32_t>(bits24)) * 0x1p-24f; }

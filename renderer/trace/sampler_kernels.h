@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 
+#include "base/isa.h"
+
 namespace lumi {
 
 /// Sobol pairs of many paths at once, the same bits as SampleStream's.
@@ -11,16 +13,6 @@ struct SamplerKernels {
                   float* y);
 };
 
-const SamplerKernels& samplerKernels();
-
-namespace baseline {
-const SamplerKernels& samplerTable();
-}
-namespace v3 {
-const SamplerKernels& samplerTable();
-}
-namespace v4 {
-const SamplerKernels& samplerTable();
-}
+LUMI_KERNELS(SamplerKernels, sampler)
 
 }  // namespace lumi
