@@ -9,7 +9,8 @@ namespace lumi {
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
 /// A glTF 2.0 metallic-roughness material with the KHR extensions that this renderer shades.
-/// Factors multiply their texture. Colours are linear Rec.709.
+/// Factors multiply their texture. Colours are linear Rec.709. Of glTF's core only occlusionTexture is left out, and never
+/// decoded: light transport computes occlusion.
 struct Material {
     std::string name;
 
@@ -21,10 +22,10 @@ struct Material {
     Texture metallicRoughnessTexture;  ///< G roughness, B metallic
     Texture normalTexture;
     float normalScale = 1;
-    Texture occlusionTexture;  ///< read, not used by the path tracer: light transport computes occlusion
 
     Vec3 emission{0};  ///< radiance, W/(m^2 sr), strength included
     Texture emissionTexture;
+    bool unlit = false;  ///< KHR_materials_unlit: the mesh's colours multiply the emission
 
     AlphaMode alphaMode = AlphaMode::Opaque;
     float alphaCutoff = 0.5f;

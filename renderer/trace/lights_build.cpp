@@ -11,7 +11,10 @@ namespace {
 /// Mean luminance that a triangle emits: its emission texture filtered over the triangle's extent. Triangles in
 /// darkness near light keep a small share, so that no texel with light is out of reach.
 float triangleLuminance(const MaterialRecord& material, const InstanceRecord& instance, const UVec3& t) {
-    const float factor = luminance(glm::max(material.emission, Vec3(0)));
+    Vec3 emission = glm::max(material.emission, Vec3(0));
+    if (const Vec4* colours = material.unlit ? instance.colours : nullptr)
+        emission *= Vec3(colours[t.x] + colours[t.y] + colours[t.z]) * (1.0f / 3.0f);
+    const float factor = luminance(emission);
     if (!(material.textures & MaterialRecord::kEmission)) return factor;
     const Texture& texture = material.source->emissionTexture;
     const Vec2* uv = instance.uv[texture.uvSet == 1 ? 1 : 0];
@@ -21,7 +24,7 @@ float triangleLuminance(const MaterialRecord& material, const InstanceRecord& in
     const float extent = std::max(size.x, size.y);
     const Vec2 middle = (a + b + c) * (1.0f / 3.0f);
     const auto filtered = [&](float width) {
-        return luminance(material.emission * Vec3(texture.sample(middle, width)));
+        return luminance(emission * Vec3(texture.sample(middle, width)));
     };
     return filtered(extent) + 0.05f * filtered(4 * extent) + 1e-4f * factor;
 }

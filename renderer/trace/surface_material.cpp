@@ -12,6 +12,11 @@ namespace {
 float unitInterval(float x) { return x > 0 ? std::min(x, 1.0f) : 0.0f; }
 Vec3 unitInterval(const Vec3& v) { return {unitInterval(v.x), unitInterval(v.y), unitInterval(v.z)}; }
 
+/// The mesh's colour, of an instance that has one.
+Vec3 colourAt(const InstanceRecord& instance, const UVec3& t, Vec2 b) {
+    return Vec3(instance.colours[t.x] * (1 - b.x - b.y) + instance.colours[t.y] * b.x + instance.colours[t.z] * b.y);
+}
+
 }  // namespace
 
 void prefetchMaterial(const MaterialRecord& m, TextureLookups& lookup) {
@@ -52,10 +57,7 @@ void evaluateMaterial(const MaterialRecord& m, TextureLookups& lookup, Surface& 
         if (has(MaterialRecord::kSpecularColor)) in.specularColor *= Vec3(lookup(source.specularColorTexture));
         if (has(MaterialRecord::kTransmission)) in.transmission *= lookup(source.transmissionTexture).x;
     }
-    if (instance.colours) {
-        const Vec4 colour = instance.colours[t.x] * (1 - b.x - b.y) + instance.colours[t.y] * b.x + instance.colours[t.z] * b.y;
-        in.baseColor *= Vec3(colour);
-    }
+    if (instance.colours) in.baseColor *= colourAt(instance, t, b);
     in.baseColor = unitInterval(in.baseColor);
     in.metallic = unitInterval(in.metallic), in.roughness = unitInterval(in.roughness);
     in.specular = unitInterval(in.specular), in.transmission = unitInterval(in.transmission);
@@ -72,11 +74,12 @@ void evaluateMaterial(const MaterialRecord& m, TextureLookups& lookup, Surface& 
 }
 
 Vec3 emissionAt(const MaterialRecord& m, const InstanceRecord& instance, const UVec3& t, Vec2 b) {
-    if (!(m.textures & MaterialRecord::kEmission)) return m.emission;
+    const Vec3 factor = m.unlit && instance.colours ? m.emission * colourAt(instance, t, b) : m.emission;
+    if (!(m.textures & MaterialRecord::kEmission)) return factor;
     const Texture& texture = m.source->emissionTexture;
     const Vec2* uv = instance.uv[texture.uvSet == 1 ? 1 : 0];
     const Vec2 at = uv ? uv[t.x] * (1 - b.x - b.y) + uv[t.y] * b.x + uv[t.z] * b.y : Vec2(0);
-    return m.emission * Vec3(texture.sample(at));
+    return factor * Vec3(texture.sample(at));
 }
 
 Vec3 mappedNormal(const Texture& texture, float scale, TextureLookups& lookup, const Vec3& tangent,

@@ -41,13 +41,13 @@ constexpr std::array kSupportedExtensions = {"EXT_mesh_gpu_instancing",
                                              "KHR_mesh_quantization",
                                              "KHR_texture_transform"};
 
-/// Texture formats that are shown as placeholders, with a warning of their own (TextureLibrary).
-constexpr std::array kPlaceholderExtensions = {"EXT_texture_avif", "EXT_texture_webp", "KHR_texture_basisu",
-                                               "MSFT_texture_dds"};
+/// Texture formats that are shown as stand-ins, with a warning of their own (TextureLibrary).
+constexpr std::array kStandInExtensions = {"EXT_texture_avif", "EXT_texture_webp", "KHR_texture_basisu",
+                                           "MSFT_texture_dds"};
 
 bool isSupported(const std::string& extension) {
     const auto in = [&](const auto& list) { return std::find(list.begin(), list.end(), extension) != list.end(); };
-    return in(kSupportedExtensions) || in(kPlaceholderExtensions);
+    return in(kSupportedExtensions) || in(kStandInExtensions);
 }
 
 std::string firstLine(const std::string& text) { return text.substr(0, text.find_first_of("\r\n")); }
@@ -103,9 +103,9 @@ void Document::parse(std::span<const uint8_t> file) {
     uint64_t bytes = 0;
     const JsonSummary summary = inspectJson(json, name_);
     checkRequiredExtensions(summary.requiredExtensions);
-    bool anyPlaceholder = summary.hasDraco;
+    bool needsPatch = summary.hasDraco;
     for (const JsonSummary::Buffer& buffer : summary.buffers) {
-        anyPlaceholder |= buffer.isFallback;
+        needsPatch |= buffer.isFallback;
         if (buffer.isFallback) continue;
         if (buffer.external) externalBufferLengths_.push_back(buffer.byteLength);
         bytes += buffer.hasUri ? 0 : std::min<uint64_t>(buffer.byteLength, file.size());
@@ -117,14 +117,14 @@ void Document::parse(std::span<const uint8_t> file) {
     reader.SetImageLoader(keepEncoded, this);
     std::string error, warning;
     const bool good = [&] {
-        const std::string patched = anyPlaceholder ? withoutPlaceholders(json) : std::string();
+        const std::string patched = needsPatch ? readableByTinygltf(json) : std::string();
         if (binary) {
-            const std::vector<uint8_t> glb = anyPlaceholder ? withJsonChunk(file, patched) : std::vector<uint8_t>();
-            const std::span<const uint8_t> whole = anyPlaceholder ? std::span<const uint8_t>(glb) : file;
+            const std::vector<uint8_t> glb = needsPatch ? withJsonChunk(file, patched) : std::vector<uint8_t>();
+            const std::span<const uint8_t> whole = needsPatch ? std::span<const uint8_t>(glb) : file;
             return reader.LoadBinaryFromMemory(&model_, &error, &warning, whole.data(),
                                                static_cast<unsigned int>(whole.size()), kFolder);
         }
-        const std::string_view text = anyPlaceholder ? std::string_view(patched) : json;
+        const std::string_view text = needsPatch ? std::string_view(patched) : json;
         return reader.LoadASCIIFromString(&model_, &error, &warning, text.data(),
                                           static_cast<unsigned int>(text.size()), kFolder);
     }();

@@ -102,7 +102,7 @@ private:
 
 }  // namespace
 
-std::string withoutPlaceholders(std::string_view json) {
+std::string readableByTinygltf(std::string_view json) {
     Json tree = Json::parse(json.begin(), json.end());
     const auto each = [](Json& parent, const char* name, const auto& visit) {
         if (!parent.is_object() || !parent.contains(name) || !parent[name].is_array()) return;

@@ -24,7 +24,7 @@ inline constexpr int kMaxJsonDepth = 128;
 
 /// The JSON in a form that tinygltf accepts: every fallback buffer is one byte long and embedded, so that nothing is
 /// read for it; the indices of Draco primitives, which tinygltf wants bytes for, stand in their extension.
-std::string withoutPlaceholders(std::string_view json);
+std::string readableByTinygltf(std::string_view json);
 
 /// Reads through the JSON without building a tree and without recursion. Throws Error(BadInput): a syntax error (with
 /// line and column), or nesting deeper than kMaxJsonDepth. `where` heads messages.

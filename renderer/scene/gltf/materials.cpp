@@ -71,7 +71,6 @@ private:
             core(pbr.metallicRoughnessTexture, "pbrMetallicRoughness/metallicRoughnessTexture", TextureUse::Data);
         material_.normalTexture = core(source_.normalTexture, "normalTexture", TextureUse::Normal);
         material_.normalScale = std::clamp(static_cast<float>(source_.normalTexture.scale), -16.0f, 16.0f);
-        material_.occlusionTexture = core(source_.occlusionTexture, "occlusionTexture", TextureUse::Data);
         material_.emission = clampedColour(vec3From(source_.emissiveFactor, Vec3(0)), 1e9f);
         material_.emissionTexture = core(source_.emissiveTexture, "emissiveTexture", TextureUse::Colour);
         material_.doubleSided = source_.doubleSided;
@@ -164,6 +163,7 @@ private:
 
     /// Unlit surfaces show their colour whatever the light: they emit it and scatter nothing.
     void makeUnlit() {
+        material_.unlit = true;
         material_.emission = material_.baseColor;
         material_.emissionTexture = material_.baseColorTexture;
         material_.baseColor = Vec3(0);

@@ -25,7 +25,7 @@ Wrap wrapMode(int mode) {
 }
 
 /// What stands in for an image that cannot be read: a magenta and grey checker for colours, neutral values for data.
-TextureImage::Level placeholderLevel(TextureUse use) {
+TextureImage::Level standInLevel(TextureUse use) {
     if (use == TextureUse::Data) return {{1, 1}, {255, 255, 255, 255}, {}};
     if (use == TextureUse::Normal) return {{1, 1}, {128, 128, 255, 255}, {}};
     return {{2, 2}, {255, 0, 255, 255, 90, 90, 90, 255, 90, 90, 90, 255, 255, 0, 255, 255}, {}};
@@ -83,7 +83,7 @@ Texture TextureLibrary::texture(int index, int texCoord, const tinygltf::Extensi
     texture.uvSet = std::clamp(texture.uvSet, 0, 1 << 20);
     if (source.source < 0) {
         countUnsupported(formatOf(source.extensions));
-        texture.image = placeholder(use);
+        texture.image = standIn(use);
         return texture;
     }
     document_.checkIndex(source.source, document_.images().size(), texturePath + "/source", "images");
@@ -106,11 +106,11 @@ Texture TextureLibrary::roughnessFromGloss(const Texture& specularGloss, float g
     return texture;
 }
 
-std::shared_ptr<TextureImage> TextureLibrary::placeholder(TextureUse use) const {
+std::shared_ptr<TextureImage> TextureLibrary::standIn(TextureUse use) const {
     auto image = std::make_shared<TextureImage>();
-    image->name = "placeholder";
+    image->name = "stand-in";
     image->srgb = use == TextureUse::Colour;
-    image->levels.push_back(placeholderLevel(use));
+    image->levels.push_back(standInLevel(use));
     buildMips(*image);
     return image;
 }
@@ -128,10 +128,10 @@ void TextureLibrary::fill(Entry& entry, TextureImage::Level level) const {
     }
 }
 
-void TextureLibrary::showPlaceholder(Entry& entry) {
+void TextureLibrary::showStandIn(Entry& entry) {
     for (int use = 0; use < 3; ++use)
         if (entry.images[use]) {
-            entry.images[use]->levels.assign(1, placeholderLevel(static_cast<TextureUse>(use)));
+            entry.images[use]->levels.assign(1, standInLevel(static_cast<TextureUse>(use)));
             buildMips(*entry.images[use]);
         }
 }
@@ -151,14 +151,14 @@ void TextureLibrary::loadImage(int index, Entry& entry) const {
         entry.digest = digest64(bytes);
         if (const std::string format = formatOf(bytes); !format.empty()) {
             countUnsupported(format);
-            return showPlaceholder(entry);
+            return showStandIn(entry);
         }
         Image8 decoded = decodeImage8(bytes, source.name);
         fill(entry, {decoded.extent, std::move(decoded.rgba), {}});
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::BadInput) throw;
-        document_.warn(jsonPath + ": " + error.what() + "; a placeholder is shown");
-        showPlaceholder(entry);
+        document_.warn(jsonPath + ": " + error.what() + "; a stand-in is shown");
+        showStandIn(entry);
     }
 }
 
@@ -170,7 +170,7 @@ void TextureLibrary::countUnsupported(const std::string& format) const {
 void TextureLibrary::warnUnsupported() const {
     for (const auto& [format, count] : unsupported_)
         document_.warn(std::to_string(count) + (count == 1 ? " texture is in " : " textures are in ") + format +
-                       ", which is not supported; placeholders are shown");
+                       ", which is not supported; stand-ins are shown");
 }
 
 void TextureLibrary::load(const std::function<void(float)>& step) {

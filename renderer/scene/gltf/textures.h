@@ -25,7 +25,7 @@ public:
     /// Makes glTF's metallic-roughness (G = 1 - gloss) of a specular-glossiness texture (A = gloss) once it is decoded.
     Texture roughnessFromGloss(const Texture& specularGloss, float glossFactor);
 
-    /// Reads, decodes and builds the mip levels of every image asked for. What cannot be read gets a placeholder and
+    /// Reads, decodes and builds the mip levels of every image asked for. What cannot be read gets a stand-in and
     /// a warning. `step` is called after each image with the share that is done. Polls the document's stop token.
     void load(const std::function<void(float)>& step);
 
@@ -44,8 +44,8 @@ private:
     };
     void loadImage(int index, Entry& entry) const;
     void fill(Entry& entry, TextureImage::Level level) const;
-    std::shared_ptr<TextureImage> placeholder(TextureUse use) const;
-    static void showPlaceholder(Entry& entry);
+    std::shared_ptr<TextureImage> standIn(TextureUse use) const;
+    static void showStandIn(Entry& entry);
     void countUnsupported(const std::string& format) const;
     void warnUnsupported() const;
 

@@ -74,7 +74,7 @@ TEST_F(GltfAssets, AllOpen) {
             EXPECT_TRUE(isFinite(posed->bounds.lower) && isFinite(posed->bounds.upper)) << name;
             EXPECT_EQ(posed->anythingMoves, time > 0) << name;
             for (const std::string& warning : log.warnings())
-                EXPECT_EQ(warning.find("placeholder"), warning.npos) << warning;
+                EXPECT_EQ(warning.find("stand-in"), warning.npos) << warning;
             ++opened;
         } catch (const Error& error) {
             EXPECT_NE(std::string(error.what()).find("requires the extension"), std::string::npos) << error.what();

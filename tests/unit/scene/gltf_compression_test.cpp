@@ -153,7 +153,7 @@ TEST(GltfCompression, MeshoptIsCheckedBeforeItIsGivenMemory) {
     damaged.expectRefused({"/bufferViews/0", "damaged"});
 }
 
-TEST(GltfCompression, TexturesInOtherFormatsArePlaceholdersWithOneWarning) {
+TEST(GltfCompression, TexturesInOtherFormatsAreStandInsWithOneWarning) {
     GltfBuilder file;
     test::addForeignTextures(file);
     MessageLog log;

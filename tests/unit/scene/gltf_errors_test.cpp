@@ -168,7 +168,7 @@ TEST(GltfErrors, MissingAndDamagedTexturesAreWarnings) {
         MessageLog log;
         const Scene scene = loadGltf(folder / "a.glb", log);
         ASSERT_EQ(log.warnings().size(), 1u) << image;
-        EXPECT_NE(log.warnings()[0].find("placeholder"), std::string::npos) << log.warnings()[0];
+        EXPECT_NE(log.warnings()[0].find("stand-in"), std::string::npos) << log.warnings()[0];
         EXPECT_NE(log.warnings()[0].find("/images/0"), std::string::npos) << log.warnings()[0];
         ASSERT_TRUE(scene.materials[0].baseColorTexture);
         EXPECT_GT(scene.materials[0].baseColorTexture.sample({0.1f, 0.1f}).x, 0);

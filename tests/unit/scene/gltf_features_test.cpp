@@ -142,6 +142,7 @@ TEST(GltfFeatures, UnlitEmitsItsColour) {
         R"({"pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.4, 0.6, 1]}, "extensions": {"KHR_materials_unlit": {}}})")};
     const Material m = file.load().materials[0];
     expectNear(m.emission, {0.2f, 0.4f, 0.6f});
+    EXPECT_TRUE(m.unlit);
     EXPECT_TRUE(isBlack(m.baseColor));
     EXPECT_EQ(m.specular, 0);
 }

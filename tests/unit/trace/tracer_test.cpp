@@ -282,5 +282,26 @@ TEST(PathSettings, DescribesEveryMember) {
     for (const ParameterInfo& info : list) EXPECT_EQ(info.redo, Redo::Samples) << info.id;
 }
 
+TEST(Tracer, UnlitSurfacesShowTheirColourTimesThatOfTheirVertices) {
+    Mesh sheet = rectangleMesh(2, 2, Facing::Z);
+    for (const Vec3& p : sheet.positions) sheet.colours.emplace_back(p.x > 0 ? 1.0f : 0.0f, 0.5f, 2.0f, 1.0f);
+    for (const bool unlit : {true, false}) {
+        TinyScene tiny;
+        Material material = lambert(0);
+        material.emission = Vec3(0.2f, 0.4f, 0.6f);
+        material.unlit = unlit;
+        tiny.add(sheet, material);
+        Tracer tracer;
+        tracer.bind(tiny.pose());
+        PathStart start;
+        start.ray.origin = Vec3(0.5f, 0.1f, 3);
+        start.ray.direction = Vec3(0, 0, -1);
+        Vec3 radiance;
+        tracer.tracePaths({&start, 1}, plainPaths(1), 0, {&radiance, 1}, {});
+        const Vec3 expected = material.emission * (unlit ? Vec3(0.75f, 0.5f, 2) : Vec3(1));
+        EXPECT_LT(glm::distance(radiance, expected), 1e-5f) << unlit;
+    }
+}
+
 }  // namespace
 }  // namespace lumi
