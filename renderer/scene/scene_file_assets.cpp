@@ -68,9 +68,9 @@ AssetSource readAsset(SceneFileContext& context, const JsonMember& member) {
 }
 
 /// The limit surface of an OBJ cage as a scene of one instance with one slot.
-Scene loadSubdivided(const std::filesystem::path& path, const Subdivision& subdivision) {
+Scene loadSubdivided(const SceneFileContext& context, const std::filesystem::path& path, const Subdivision& subdivision) {
     const std::vector<uint8_t> bytes = readFile(path);
-    SubdivisionCage cage = loadCage(path);
+    SubdivisionCage cage = loadCage(path, context.log);
     cage.faceMaterials.clear();
     cage.material = 0;
     SubdivisionSurface surface = tessellate(cage, subdivision.rate, path.string());
@@ -89,7 +89,7 @@ Scene loadAssetFile(const SceneFileContext& context, const AssetSource& source, 
         };
     const std::filesystem::path path = context.resolve(source.file);
     try {
-        if (source.subdivision.scheme != SubdivisionScheme::None) return loadSubdivided(path, source.subdivision);
+        if (source.subdivision.scheme != SubdivisionScheme::None) return loadSubdivided(context, path, source.subdivision);
         return source.kind == "gltf" ? loadGltf(path, context.log, options) : loadObj(path, context.log, options);
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::Interrupted) throw;

@@ -3,10 +3,16 @@
 
 #include <vector>
 
+#include "scene/obj/cage.h"
 #include "scene/subdivision.h"
 #include "scene/subdivision_topology.h"
 
 namespace lumi::test {
+
+inline SubdivisionCage cageOf(const std::string& text, const std::string& where) {
+    MessageLog log;
+    return parseCage(text, where, log);
+}
 
 /// A value that OpenSubdiv's refiner interpolates.
 struct CagePoint {

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "scene/obj/number_check.h"
 
 namespace lumi {
 namespace {
@@ -54,7 +55,8 @@ void applyTag(const tinyobj::tag_t& tag, SubdivisionCage& cage) {
 
 }  // namespace
 
-SubdivisionCage parseCage(std::string text, const std::string& where) {
+SubdivisionCage parseCage(std::string text, const std::string& where, MessageLog& log) {
+    checkObjNumbers(text, where, log);
     uncommentTags(text);
     tinyobj::ObjReaderConfig config;
     config.triangulate = false;
@@ -92,6 +94,8 @@ SubdivisionCage parseCage(std::string text, const std::string& where) {
     return cage;
 }
 
-SubdivisionCage loadCage(const std::filesystem::path& path) { return parseCage(readTextFile(path), path.string()); }
+SubdivisionCage loadCage(const std::filesystem::path& path, MessageLog& log) {
+    return parseCage(readTextFile(path), path.string(), log);
+}
 
 }  // namespace lumi

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <string>
 
+#include "base/messages.h"
 #include "scene/subdivision.h"
 
 namespace lumi {
@@ -9,7 +10,7 @@ namespace lumi {
 /// Reads an OBJ as a subdivision cage: faces as they are, with OpenSubdiv's `t` tag lines (crease, corner, hole,
 /// interpolateboundary, facevaryinginterpolateboundary, creasemethod, smoothtriangles); `#t` lines count as tags too.
 /// Hierarchical edits are ignored. Several shapes become one cage. Throws Error(BadInput).
-SubdivisionCage loadCage(const std::filesystem::path& path);
-SubdivisionCage parseCage(std::string objText, const std::string& where);
+SubdivisionCage loadCage(const std::filesystem::path& path, MessageLog& log);
+SubdivisionCage parseCage(std::string objText, const std::string& where, MessageLog& log);
 
 }  // namespace lumi

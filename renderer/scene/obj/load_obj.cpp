@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "scene/obj/number_check.h"
 #include "scene/obj/obj_materials.h"
 #include "scene/obj/obj_mesh.h"
 
@@ -64,6 +65,7 @@ ParsedObj parse(const std::filesystem::path& path, MessageLog& log) {
     checkMemory("reading " + where, bytes.size() * kBytesPerByte);
     ParsedObj parsed;
     parsed.digest = digest64(bytes);
+    checkObjNumbers({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, where, log);
     std::istringstream text(std::string(bytes.begin(), bytes.end()));
     bytes = {};
     FolderMaterials materials(path.parent_path(), log, where, parsed.digest);

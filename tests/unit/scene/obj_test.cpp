@@ -119,6 +119,20 @@ TEST(Obj, MissingFilesAreWarnings) {
     EXPECT_FALSE(scene.materials[0].baseColorTexture);
 }
 
+TEST(Obj, NumbersThatAreNoneAreRefusedOrCleanedWithTheirLine) {
+    const char* rest = "v 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    for (const auto& [line, found] : {std::pair("v 1 nan x", "nan"), {"v 1 2", "too few"}, {"v 0 0 1e99", "1e99"},
+                                      {"v 0 inf 0", "inf"}, {"v 1,5 0 0", "1,5"}, {"v", "too few"}})
+        expectError(ErrorKind::BadInput, [&] { loadText(std::string("# one\n\t") + line + "\n" + rest); }, {"a.obj:2", found});
+    MessageLog log;
+    const Scene scene = loadText("v +0 -.5 1e-400 # a place\r\nv 1 0. 0 0.5 .5 1E-1\nv 0 1 0\nvt nan 0\nvt 1 0\nvn -nan(ind) 0 0\n"
+                                 "vn 0 0\nf 1/1/1 2/2/1 3/2/2\n", log);
+    EXPECT_EQ(scene.instances.at(0).mesh->positions[0], Vec3(0, -0.5f, 0));
+    for (const Vec3& n : scene.instances[0].mesh->normals) EXPECT_NEAR(glm::length(n), 1, 1e-6f);
+    ASSERT_EQ(log.warnings().size(), 1u);
+    EXPECT_EQ(log.warnings()[0], "a.obj:4: not finite numbers, read as 0, as on 2 more lines");
+}
+
 TEST(Obj, BadIndicesAreRefused) {
     expectError(ErrorKind::BadInput, [] { loadText("v 0 0 0\nv 1 0 0\nf 1 2 9\n"); }, {"a.obj"});
     expectError(ErrorKind::BadInput, [] { loadText("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/4 2/5 3/6\n"); }, {"a.obj"});

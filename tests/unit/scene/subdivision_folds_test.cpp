@@ -43,11 +43,11 @@ float worstDistance(const SubdivisionSurface& surface, const std::vector<Vec3>& 
 
 TEST(SubdivisionFolds, AreFoundAndOnlyThem) {
     const char* strip = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\nf 2 5 6 3\n";
-    const SubdivisionCage quads = parseCage(strip, "quads");
+    const SubdivisionCage quads = cageOf(strip, "quads");
     EXPECT_FALSE(hasFolds(makeRefiner(quads, "test")->GetLevel(0)));
-    EXPECT_TRUE(hasFolds(makeRefiner(parseCage(kHexagons, "hexagons"), "test")->GetLevel(0)));
+    EXPECT_TRUE(hasFolds(makeRefiner(cageOf(kHexagons, "hexagons"), "test")->GetLevel(0)));
     // Two faces back to back: every vertex is a fold.
-    const SubdivisionCage pillow = parseCage("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 4 3 2 1\n", "pillow");
+    const SubdivisionCage pillow = cageOf("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 4 3 2 1\n", "pillow");
     EXPECT_TRUE(hasFolds(makeRefiner(pillow, "test")->GetLevel(0)));
 }
 
@@ -56,7 +56,7 @@ TEST(SubdivisionFolds, TessellationLiesOnTheLimitOfRefinement) {
     // dart's edge differs from an infinitely sharp one by less than a thousandth of its length.
     const std::tuple<const char*, float> cases[] = {{"", 1e-4f}, {kSemiSharp, 1e-4f}, {kDart, 2e-3f}};
     for (const auto& [tags, tolerance] : cases) {
-        const SubdivisionCage cage = parseCage(std::string(kHexagons) + tags, "hexagons");
+        const SubdivisionCage cage = cageOf(std::string(kHexagons) + tags, "hexagons");
         const SubdivisionSurface surface = tessellate(cage, 4, "hexagons");
         EXPECT_GT(surface.mesh.triangles.size(), 60u);
         EXPECT_LT(worstDistance(surface, limitPoints(cage, 6)), tolerance) << tags;
@@ -78,8 +78,8 @@ TEST(SubdivisionFolds, OtherFacesAreTessellatedAsWithoutThem) {
     both += "v 12 0 1\nv 15 0 1\nv 15 0.5 0.4\nv 18 0 1\n";
     both += "f 11/1 12/2 13/3 17/4 16/5 15/1\nf 18/1 16/2 17/3 13/4 12/5 14/1\n";
 
-    const SubdivisionSurface alone = tessellate(parseCage(prism, "prism"), 4, "prism");
-    const SubdivisionSurface beside = tessellate(parseCage(both, "both"), 4, "both");
+    const SubdivisionSurface alone = tessellate(cageOf(prism, "prism"), 4, "prism");
+    const SubdivisionSurface beside = tessellate(cageOf(both, "both"), 4, "both");
     const auto key = [](const SubdivisionSurface& s, size_t t, int corner) {
         const Vec2 uv = s.faceCoordinates[s.mesh.triangles[t][corner]];
         return std::tuple(s.triangleFace[t], std::lround(uv.x * 1000), std::lround(uv.y * 1000));

@@ -48,6 +48,7 @@ std::vector<Vec3> readPositions(const fs::path& path) {
 TEST(Subdivision, CagesRefineToPublishedBaselines) {
     if (!fs::exists(assets())) GTEST_SKIP() << "the test assets " << assets() << " are not here";
     int compared = 0;
+    MessageLog log;
     for (const auto& entry : fs::directory_iterator(assets() / "baseline")) {
         const std::string name = entry.path().stem().string();
         const size_t mark = name.rfind("_level");
@@ -56,7 +57,7 @@ TEST(Subdivision, CagesRefineToPublishedBaselines) {
         // Hierarchical edits and the bilinear scheme are not part of our cages. OpenSubdiv 3's own refinement parts from
         // this older baseline where Chaikin creases of unequal sharpness meet (chaikin1).
         if (level > 1 || shape == "catmark_chaikin1" || shape.find("hedit") != std::string::npos || shape.find("bilinear") == 0) continue;
-        const SubdivisionCage cage = loadCage(assets() / (shape + ".obj"));
+        const SubdivisionCage cage = loadCage(assets() / (shape + ".obj"), log);
         const std::vector<Vec3> baseline = readPositions(entry.path());
         const std::vector<CagePoint> ours = refined(cage, level + 1);
         float worst = 0;
@@ -73,7 +74,7 @@ TEST(Subdivision, TessellationLiesOnTheLimitOfRefinement) {
     // sharpness.
     const std::string creased = std::string(kCube) + "#t crease 2/1/0 2 3 4.0\n#t corner 1/1/0 4 2.5\n";
     for (const std::string& text : {std::string(kCube), creased}) {
-        const SubdivisionCage cage = parseCage(text, "cube");
+        const SubdivisionCage cage = cageOf(text, "cube");
         std::vector<CagePoint> limit;
         refined(cage, 6, &limit);
         std::vector<Vec3> cloud;
@@ -84,7 +85,7 @@ TEST(Subdivision, TessellationLiesOnTheLimitOfRefinement) {
 }
 
 TEST(Subdivision, SharedEdgesHaveEqualBitsAndTheSurfaceIsClosed) {
-    const SubdivisionSurface surface = tessellate(parseCage(kCube, "cube"), 7, "cube");
+    const SubdivisionSurface surface = tessellate(cageOf(kCube, "cube"), 7, "cube");
     using Key = std::array<float, 3>;
     const auto key = [&](uint32_t v) {
         const Vec3& p = surface.mesh.positions[v];
@@ -100,7 +101,7 @@ TEST(Subdivision, SharedEdgesHaveEqualBitsAndTheSurfaceIsClosed) {
 }
 
 TEST(Subdivision, NormalsPointOutwards) {
-    const SubdivisionSurface surface = tessellate(parseCage(kCube, "cube"), 5, "cube");
+    const SubdivisionSurface surface = tessellate(cageOf(kCube, "cube"), 5, "cube");
     for (size_t v = 0; v < surface.mesh.positions.size(); ++v) {
         EXPECT_NEAR(glm::length(surface.mesh.normals[v]), 1, 1e-5);
         EXPECT_GT(glm::dot(surface.mesh.normals[v], surface.mesh.positions[v]), 0);
@@ -108,7 +109,7 @@ TEST(Subdivision, NormalsPointOutwards) {
 }
 
 TEST(Subdivision, ADeformingCageMovesItsSurfaceAlong) {
-    const SubdivisionCage cage = parseCage(kCube, "cube");
+    const SubdivisionCage cage = cageOf(kCube, "cube");
     const SubdivisionSurface surface = tessellate(cage, 6, "cube");
     std::vector<Vec3> moved, positions, normals;
     const auto affine = [](const Vec3& p) { return Vec3(2 * p.x + p.y + 1, p.y - 3, 0.5f * p.z + p.x); };
@@ -120,24 +121,26 @@ TEST(Subdivision, ADeformingCageMovesItsSurfaceAlong) {
 
 TEST(Subdivision, EveryAssetCageTessellates) {
     if (!fs::exists(assets())) GTEST_SKIP() << "the test assets " << assets() << " are not here";
+    MessageLog log;
     for (const auto& entry : fs::recursive_directory_iterator(assets().parent_path())) {
         if (entry.path().extension() != ".obj" || entry.path().string().find("baseline") != std::string::npos) continue;
-        const SubdivisionSurface surface = tessellate(loadCage(entry.path()), 3, entry.path().string());
+        const SubdivisionSurface surface = tessellate(loadCage(entry.path(), log), 3, entry.path().string());
         EXPECT_GT(surface.mesh.triangles.size(), 0u) << entry.path();
         checkMesh(surface.mesh, entry.path().string());
     }
+    EXPECT_TRUE(log.warnings().empty()) << log.warnings().front();
 }
 
 TEST(Subdivision, RefusesBrokenCages) {
-    SubdivisionCage cage = parseCage(kCube, "cube");
+    SubdivisionCage cage = cageOf(kCube, "cube");
     EXPECT_THROW(tessellate(cage, 0, "cube"), Error);
     cage.faceVertices[0] = 99;
     EXPECT_THROW(tessellate(cage, 2, "cube"), Error);
-    EXPECT_THROW(parseCage("v 0 0 0\n", "points.obj"), Error);
+    EXPECT_THROW(cageOf("v 0 0 0\n", "points.obj"), Error);
     std::string wide = "f", points;
     for (int i = 1; i <= 256; ++i) points += "v 0 0 " + std::to_string(i) + "\n", wide += " " + std::to_string(i);
     try {
-        parseCage(points + wide + "\n", "wide.obj");
+        cageOf(points + wide + "\n", "wide.obj");
         ADD_FAILURE() << "a face of 256 corners is accepted";
     } catch (const Error& error) {
         EXPECT_EQ(std::string(error.what()), "wide.obj: a face has too many corners; expected at most 255");

@@ -1,0 +1,68 @@
+#include "scene/obj/number_check.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace lumi {
+namespace {
+
+constexpr std::string_view kSpace = " \t\r";
+
+/// The next word of a line, which is shortened by it; empty at its end or before a comment.
+std::string_view nextWord(std::string_view& line) {
+    const size_t begin = line.find_first_not_of(kSpace);
+    if (begin == line.npos || line[begin] == '#') return {};
+    line.remove_prefix(begin);
+    const std::string_view word = line.substr(0, line.find_first_of(kSpace));
+    line.remove_prefix(word.size());
+    return word;
+}
+
+bool isFiniteNumber(std::string_view word) {
+    if (word.starts_with('+')) word.remove_prefix(1);
+    double value = 0;
+    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+    // What is too small for a double is 0, and good.
+    const bool fits = code == std::errc() || (code == std::errc::result_out_of_range && word.find_first_of("eE") != word.npos && word.find("-", 1) != word.npos);
+    return fits && end == word.data() + word.size() && std::isfinite(static_cast<float>(value));
+}
+
+/// The first word that is no finite number, or what is missing among `least`; empty if all is well.
+std::string_view faultOf(std::string_view line, int least) {
+    int count = 0;
+    for (std::string_view word = nextWord(line); !word.empty(); word = nextWord(line), ++count)
+        if (!isFiniteNumber(word)) return word.substr(0, 40);
+    return count < least ? std::string_view("too few numbers") : std::string_view();
+}
+
+}  // namespace
+
+void checkObjNumbers(std::string_view text, const std::string& where, MessageLog& log) {
+    size_t lineNumber = 0, faults = 0, first = 0;
+    for (size_t at = 0; at < text.size();) {
+        const size_t end = std::min(text.find('\n', at), text.size());
+        std::string_view line = text.substr(at, end - at);
+        at = end + 1;
+        ++lineNumber;
+        const size_t begin = line.find_first_not_of(kSpace);
+        if (begin == line.npos || line[begin] != 'v') continue;
+        const std::string_view kind = nextWord(line);
+        if (kind == "v") {
+            if (const std::string_view fault = faultOf(line, 3); !fault.empty())
+                throwBadInput({.what = "the position of a vertex is no place",
+                               .where = where + ":" + std::to_string(lineNumber),
+                               .expected = "three finite numbers",
+                               .found = std::string(fault)});
+        } else if (kind == "vt" || kind == "vn") {
+            if (faultOf(line, kind == "vt" ? 1 : 3).empty()) continue;
+            if (faults++ == 0) first = lineNumber;
+        }
+    }
+    if (faults > 0)
+        log.warning(where + ":" + std::to_string(first) + ": not finite numbers, read as 0" +
+                    (faults > 1 ? ", as on " + std::to_string(faults - 1) + " more lines" : std::string()));
+}
+
+}  // namespace lumi
