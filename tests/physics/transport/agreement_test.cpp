@@ -15,14 +15,15 @@ using namespace test;
 constexpr Extent2 kExtent{24, 18};
 const SignalSet kMoments{Signal::Noisy, Signal::SampleVariance};
 
-/// Area light, sky with a bright side, rough metal, gloss and a diffuse floor.
-TinyScene mixedScene() {
+/// Area light, sky with a bright side, metal, gloss and a diffuse floor; the metal of that roughness, the gloss of one at
+/// least 0.4.
+TinyScene mixedScene(float roughness = 0.25f) {
     TinyScene tiny;
     tiny.add(floorMesh(8), lambert(Vec3(0.7f, 0.6f, 0.5f)));
-    tiny.add(sphereMesh(0.7f, 32, 16), metal(0.9f, 0.25f), translation(Vec3(-0.8f, 0.7f, 0)));
+    tiny.add(sphereMesh(0.7f, 32, 16), metal(0.9f, roughness), translation(Vec3(-0.8f, 0.7f, 0)));
     Material gloss;
     gloss.baseColor = Vec3(0.2f, 0.5f, 0.3f);
-    gloss.roughness = 0.4f;
+    gloss.roughness = std::max(0.4f, roughness);
     tiny.add(boxMesh(Vec3(0.8f)), gloss, translation(Vec3(0.8f, 0.4f, 0.3f)));
     Material glow = lambert(0);
     glow.emission = Vec3(3, 2, 1);
@@ -67,13 +68,13 @@ Signals render(std::shared_ptr<const PosedScene> posed, const Camera& camera, in
 }
 
 TEST(Strategies, MisLightAndBsdfConvergeToOneImage) {
-    const auto posed = mixedScene().pose();
-    const Signals mis = render(posed, mixedCamera(), 256, plainPaths(4, DirectStrategy::Mis), 1);
-    for (const auto strategy : {DirectStrategy::Light, DirectStrategy::Bsdf}) {
-        const Signals other =
-            render(posed, mixedCamera(), 1024, plainPaths(4, strategy), 2 + static_cast<uint32_t>(strategy));
-        // Light samples alone have tails near small emitters that a thousand of them do not show in their variance.
-        EXPECT_GE(agreeingShare(mis, other), strategy == DirectStrategy::Light ? 0.985 : 0.9975);
+    // Of a thousand light samples eight fall into the lobe of a metal of roughness 0.25: too few for a normal law, and
+    // for a variance that is true. At 0.5 it is sixteen times as many.
+    for (const auto& [strategy, roughness] : {std::pair(DirectStrategy::Light, 0.5f), std::pair(DirectStrategy::Bsdf, 0.25f)}) {
+        const auto posed = mixedScene(roughness).pose();
+        const Signals mis = render(posed, mixedCamera(), 256, plainPaths(4, DirectStrategy::Mis), 1);
+        const Signals other = render(posed, mixedCamera(), 1024, plainPaths(4, strategy), 2 + static_cast<uint32_t>(strategy));
+        EXPECT_GE(agreeingShare(mis, other), 0.9975) << static_cast<int>(strategy);
         EXPECT_LT(std::abs(biasInSigmas(mis, other)), 4) << static_cast<int>(strategy);
     }
 }
@@ -138,7 +139,7 @@ TEST(Strategies, LayersConvergeToOneImage) {
     const Camera camera = lookFrom(Vec3(0.2f, 1.4f, 3), Vec3(0, 0.25f, 0), 35);
     const Signals mis = render(posed, camera, 256, plainPaths(3, DirectStrategy::Mis), 1);
     for (const auto strategy : {DirectStrategy::Light, DirectStrategy::Bsdf}) {
-        const Signals other = render(posed, camera, 512, plainPaths(3, strategy), 2 + static_cast<uint32_t>(strategy));
+        const Signals other = render(posed, camera, 1024, plainPaths(3, strategy), 2 + static_cast<uint32_t>(strategy));
         EXPECT_GE(agreeingShare(mis, other), 0.9975) << static_cast<int>(strategy);
         EXPECT_LT(std::abs(biasInSigmas(mis, other)), 4) << static_cast<int>(strategy);
     }
