@@ -238,6 +238,8 @@ TEST(ReadReplay, RefusesWhatIsNoState) {
     refuse(R"({"format": "lumiscope-state", "version": 1, "scene": {"name": 3}})", "\"name\"");
     refuse(R"({"format": "lumiscope-state", "version": 1, "scene": {"name": "a", "digest": "b"}, "isa": "v3",
                "start": {"frame": 5, "set": {}}, "frame": 2, "frames": []})", "order");
+    refuse(R"({"format": "lumiscope-state", "version": 1, "scene": {"name": "a", "digest": "b"}, "isa": "v3",
+               "start": {"frame": 0, "set": {"scene.index": "one"}}, "frame": 2, "frames": []})", "\"scene.index\"");
     const std::string head = R"({"format": "lumiscope-state", "version": 1, "scene": {"name": "a", "digest": "b"}, "isa": "v3",
         "start": {"frame": 0, "set": {}}, "frame": 9, "frames": [)";
     refuse(head + R"({"frame": 1, "last": 4, "clock": {"frame": 0, "time": 0, "fps": 0}}]})", "clock");
