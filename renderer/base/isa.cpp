@@ -12,13 +12,26 @@ std::atomic<Isa>& active() {
     return isa;
 }
 
+// clang 14 knows features, not levels; these tell the levels apart on every processor that has them.
+#ifdef __clang__
+bool hasV3() {
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
+           __builtin_cpu_supports("bmi2");
+}
+bool hasV4() {
+    return hasV3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+}
+#else
+bool hasV3() { return __builtin_cpu_supports("x86-64-v3"); }
+bool hasV4() { return __builtin_cpu_supports("x86-64-v4"); }
+#endif
+
 }  // namespace
 
 Isa detectIsa() {
     __builtin_cpu_init();
-    if (__builtin_cpu_supports("x86-64-v4")) return Isa::V4;
-    if (__builtin_cpu_supports("x86-64-v3")) return Isa::V3;
-    return Isa::Baseline;
+    return hasV4() ? Isa::V4 : hasV3() ? Isa::V3 : Isa::Baseline;
 }
 
 Isa activeIsa() { return active(); }

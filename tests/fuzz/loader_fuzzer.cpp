@@ -1,64 +1,45 @@
-// libFuzzer target of one loader: LUMI_FUZZ_EXTENSION chooses which. Errors are what loaders should throw; anything else
-// that leaves them, a crash, a leak or a time-out is a finding.
-#include <unistd.h>
-
-#include <cstdint>
-#include <filesystem>
-#include <span>
-#include <string>
-
-#include "base/error.h"
-#include "base/files.h"
-#include "base/memory.h"
-#include "base/parallel.h"
+// libFuzzer target of one loader of scenes and images: LUMI_FUZZ_KIND chooses which.
+#include "fuzz/fuzz_target.h"
 #include "image/decode.h"
 #include "image/exr.h"
 #include "image/hdr.h"
 #include "image/png.h"
+#include "scene/camera_path.h"
 #include "scene/load.h"
 #include "scene/obj/cage.h"
 #include "scene/posed_scene.h"
 #include "scene/subdivision.h"
 
+namespace lumi::fuzz {
 namespace {
-using namespace lumi;
 
-const std::string kExtension = LUMI_FUZZ_EXTENSION;
+const std::string kKind = LUMI_FUZZ_KIND;
 
-/// A file of that content in memory-backed storage.
-std::filesystem::path fileOf(std::span<const uint8_t> bytes) {
-    static const std::filesystem::path path =
-        std::filesystem::path("/dev/shm") / ("lumiscope-fuzz-" + std::to_string(getpid()) + kExtension);
-    writeFileAtomically(path, bytes);
-    return path;
+/// All that a session does with a file before it traces it.
+void open(const std::filesystem::path& path) {
+    MessageLog log;
+    poseScene(loadScene(path, log), {0.3f, 0.3f, 0.2f});
 }
 
-void load(std::span<const uint8_t> bytes) {
-    if (kExtension == ".exr") decodeExr(bytes, "fuzz.exr");
-    else if (kExtension == ".hdr") decodeHdr(bytes, "fuzz.hdr");
-    else if (kExtension == ".png") decodePng(bytes, "fuzz.png");
-    else if (kExtension == ".jpg") decodeImage8(bytes, "fuzz.jpg");
-    else if (kExtension == ".cage") {
-        const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        tessellate(parseCage(text, "fuzz"), 2, "fuzz");
-    } else {
-        MessageLog log;
-        poseScene(loadScene(fileOf(bytes), log), {0.3f, 0.3f, 0.2f});
-    }
+void openWithMaterials(Bytes mtl) {
+    fileOf(mtl, "fuzz.mtl");
+    static const std::string obj =
+        "mtllib fuzz.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 3/3 2/2 1/1\n";
+    open(fileOf({reinterpret_cast<const uint8_t*>(obj.data()), obj.size()}, "fuzz.obj"));
 }
 
 }  // namespace
 
-extern "C" int LLVMFuzzerInitialize(int*, char***) {
-    setMemoryLimit(uint64_t(1) << 30);
-    setThreadCount(1);
-    return 0;
+void load(Bytes bytes) {
+    MessageLog log;
+    if (kKind == "exr") decodeExr(bytes, "fuzz.exr");
+    else if (kKind == "hdr") decodeHdr(bytes, "fuzz.hdr");
+    else if (kKind == "png") decodePng(bytes, "fuzz.png");
+    else if (kKind == "jpg") decodeImage8(bytes, "fuzz.jpg");
+    else if (kKind == "cage") tessellate(parseCage(text(bytes), "fuzz", log), 2, "fuzz");
+    else if (kKind == "mtl") openWithMaterials(bytes);
+    else if (kKind == "path") readCameraPath(fileOf(bytes, "fuzz.json"));
+    else open(fileOf(bytes, "fuzz." + kKind));
 }
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-    try {
-        load({data, size});
-    } catch (const Error&) {
-    }
-    return 0;
-}
+}  // namespace lumi::fuzz
