@@ -8,6 +8,8 @@
 #include "app/commands.h"
 #include "base/files.h"
 #include "base/memory.h"
+#include "scene/material_textures.h"
+#include "scene/posed_scene.h"
 #include "session/signals_check.h"
 
 namespace lumi {
@@ -31,9 +33,32 @@ int64_t emittingMaterials(const Scene& scene) {
     return count;
 }
 
+/// What rendering a scene cannot do without, and the most that the process has held so far.
+struct SceneMemory {
+    uint64_t geometry = 0, textures = 0, acceleration = 0, peak = 0;
+    uint64_t sum() const { return geometry + textures + acceleration; }
+    double peakToSum() const { return static_cast<double>(peak) / static_cast<double>(std::max<uint64_t>(sum(), 1)); }
+};
+
+/// Of a scene that `tracer` has been bound to.
+SceneMemory memoryOf(const Scene& scene, const Tracer& tracer) {
+    std::set<const TextureImage*> images;
+    for (const Material& material : scene.materials)
+        for (const auto texture : kMaterialTextures) images.insert((material.*texture).image.get());
+    for (const Light& light : scene.lights) images.insert(light.radianceTexture.image.get());
+    images.erase(nullptr);
+    SceneMemory memory;
+    memory.textures = scene.environment.image ? scene.environment.image->bytes() : 0;
+    for (const TextureImage* image : images) memory.textures += image->byteCount();
+    memory.geometry = scene.byteCount() - memory.textures;
+    memory.acceleration = tracer.byteCount();
+    memory.peak = peakResidentBytes();
+    return memory;
+}
+
 json vectorJson(const Vec3& v) { return json::array({v.x, v.y, v.z}); }
 
-json infoJson(const Scene& scene, const std::filesystem::path& file, const MessageLog& log) {
+json infoJson(const Scene& scene, const std::filesystem::path& file, const SceneMemory& memory, const MessageLog& log) {
     const Bounds3 bounds = scene.restBounds();
     json materials = json::array(), lights = json::array(), cameras = json::array(), instances = json::array();
     std::vector<std::string> materialNames, lightNames, cameraNames;
@@ -63,7 +88,12 @@ json infoJson(const Scene& scene, const std::filesystem::path& file, const Messa
             {"duration_s", scene.duration()},
             {"bounds", bounds.empty() ? json() : json{{"min", vectorJson(bounds.lower)}, {"max", vectorJson(bounds.upper)}}},
             {"memory_bytes", scene.byteCount()},
-            {"peak_memory_bytes", peakResidentBytes()},
+            {"memory", {{"geometry_bytes", memory.geometry},
+                        {"texture_bytes", memory.textures},
+                        {"acceleration_bytes", memory.acceleration},
+                        {"sum_bytes", memory.sum()},
+                        {"peak_to_sum", memory.peakToSum()}}},
+            {"peak_memory_bytes", memory.peak},
             {"warnings", log.warnings()}};
 }
 
@@ -77,7 +107,7 @@ std::string someOf(const json& things) {
     return text;
 }
 
-void printInfo(const json& info, const Scene& scene) {
+void printInfo(const json& info, const Scene& scene, const SceneMemory& memory) {
     const auto line = [](const char* name, const std::string& text) { std::puts(fmt::format("{:<12}{}", name, text).c_str()); };
     line("scene", info["title"].get<std::string>().empty() ? "(untitled)" : info["title"].get<std::string>());
     line("file", info["path"].get<std::string>());
@@ -96,7 +126,9 @@ void printInfo(const json& info, const Scene& scene) {
         line("bounds", fmt::format("{:.3g} x {:.3g} x {:.3g} m, from ({:.3g}, {:.3g}, {:.3g}) to ({:.3g}, {:.3g}, {:.3g})",
                                    bounds.size().x, bounds.size().y, bounds.size().z, bounds.lower.x, bounds.lower.y,
                                    bounds.lower.z, bounds.upper.x, bounds.upper.y, bounds.upper.z));
-    line("memory", formatBytes(scene.byteCount()));
+    line("memory", fmt::format("{}: geometry {}, textures {}, acceleration structure and lights {}; peak {}, {:.2f} of it",
+                               formatBytes(memory.sum()), formatBytes(memory.geometry), formatBytes(memory.textures),
+                               formatBytes(memory.acceleration), formatBytes(memory.peak), memory.peakToSum()));
     line("warnings", info["warnings"].empty() ? "none" : std::to_string(info["warnings"].size()));
     for (const json& warning : info["warnings"]) std::puts(("  " + warning.get<std::string>()).c_str());
 }
@@ -132,19 +164,19 @@ int runInfo(const SceneOptions& options, bool check, const std::filesystem::path
     const std::filesystem::path file = findScene(options.scene);
     const auto scene = openScene(file, options, log, stop);
     const Document document = makeDocument(scene, options, log);
+    Tracer tracer;
+    tracer.bind(poseScene(document.scene(), {0, 0, 0}));
+    const SceneMemory memory = memoryOf(*scene, tracer);
     std::vector<FrameCheck> checks;
-    if (check) {
-        Tracer tracer;
-        checks = checkFrames(document, tracer, stop);
-    }
+    if (check) checks = checkFrames(document, tracer, stop);
     if (!writeCameraPath.empty())
         writeFileAtomically(writeCameraPath,
                             formatCameraPath(cameraPathOf(*scene, document.cameraIndex(), document.render().fps),
                                              cameraPathFormatOf(writeCameraPath)));
-    json info = infoJson(*scene, file, log);
+    json info = infoJson(*scene, file, memory, log);
     if (check) info["checks"] = checksJson(checks);
     if (machine.json) std::puts(info.dump(2).c_str());
-    else printInfo(info, *scene);
+    else printInfo(info, *scene, memory);
     if (check && !machine.json) printChecks(checks);
     return std::all_of(checks.begin(), checks.end(), [](const FrameCheck& frame) { return frame.holds(); }) ? 0 : 1;
 }

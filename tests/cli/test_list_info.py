@@ -80,6 +80,10 @@ class Info(CommandTest):
         self.assertEqual(info["cameras"][0]["id"], "main")
         self.assertEqual(len(info["bounds"]["min"]), 3)
         self.assertGreater(info["memory_bytes"], 0)
+        memory = info["memory"]
+        self.assertEqual(memory["geometry_bytes"] + memory["texture_bytes"], info["memory_bytes"])
+        self.assertGreater(memory["acceleration_bytes"], 0)
+        self.assertAlmostEqual(memory["peak_to_sum"], info["peak_memory_bytes"] / memory["sum_bytes"], places=3)
         self.assertEqual(info["warnings"], [])
         self.assertFalse(info["animated"])
         self.assertTrue(all(key == key.lower() for key in info))
