@@ -19,7 +19,7 @@ float unit(double value, float otherwise) {
 class MaterialReader {
 public:
     MaterialReader(const Document& document, TextureLibrary& library, const tinygltf::Material& source, size_t index)
-        : document_(document), library_(library), source_(source), path_("/materials/" + std::to_string(index)) {
+        : library_(library), source_(source), path_("/materials/" + std::to_string(index)) {
         material_.name = source.name.empty() ? "material " + std::to_string(index) : source.name;
     }
 
@@ -173,7 +173,6 @@ private:
         material_.doubleSided = true;
     }
 
-    const Document& document_;
     TextureLibrary& library_;
     const tinygltf::Material& source_;
     std::string path_;

@@ -1,22 +1,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "math/statistics.h"
+#include "math/student_t.h"
 #include "physics/bsdf/materials.h"
 #include "trace/sampler.h"
 
 namespace lumi::test {
 namespace {
 
-const std::vector<float> kRoughnesses{0, 0.02f, 0.1f, 0.3f, 0.6f, 1};
 const std::vector<float> kCosines{1, 0.9f, 0.6f, 0.3f, 0.1f};
-
-/// One per cent of the value, or of a quarter of what arrives.
-void expectClose(const Vec3& found, const Vec3& expected, const std::string& label) {
-    for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(found[c], expected[c], 0.01f * std::max(expected[c], 0.25f)) << label << ", channel " << c;
-}
 
 const char* nameOf(Lobe lobe) {
     constexpr const char* kNames[] = {"none", "diffuse", "reflection", "transmission", "clearcoat", "sheen"};
@@ -24,62 +19,101 @@ const char* nameOf(Lobe lobe) {
 }
 
 /// By how much the tables of albedos may say too little, and a surface shine brighter than its furnace (AlbedoTable's
-/// tests hold them to it).
-constexpr double kTableError = 1e-3;
-/// Standard errors that one of some ten thousand means may be off with a chance of 1%.
-constexpr double kSigmas = 4.9;
+/// tests hold them to it); and how far they may be off where total reflection begins, which is a kink between entries.
+constexpr double kTableError = 1e-3, kKinkError = 1.25e-3;
 
-// In a furnace of radiance 1 a lobe shows its directional albedo; all together never more than arrives.
-TEST(BsdfEnergy, FurnaceBySamplingEqualsAlbedo) {
-    constexpr uint32_t kSamples = 8192;
-    forEachBsdf(kRoughnesses, kCosines, [](const Bsdf& bsdf, const BsdfInputs&, const Vec3&, const std::string& label) {
-        RunningMoments lobes[kLobeCount][3], totals[3];
-        for (uint32_t i = 0; i < kSamples; ++i) {
-            const SampleStream stream(SamplerKind::Independent, 0, 1, {3, 4, i});
-            const BsdfSample s = bsdf.sample(stream.get1(0), stream.get2(2));
-            const bool drawn = s.lobe != Lobe::None;
-            for (int lobe = 0; lobe < kLobeCount; ++lobe) {
-                Vec3 share(0);
-                if (drawn && s.delta && s.lobe == kLobes[lobe]) share = s.weight;
-                if (drawn && !s.delta) share = bsdf.evaluate(s.wi, kLobes[lobe]) / s.pdf;
-                for (int c = 0; c < 3; ++c) lobes[lobe][c].add(share[c]);
+/// What a white furnace shows of each lobe and of all together, by sample(): means of streams that are scrambled
+/// independently of each other, so that their spread is their error.
+struct Furnace {
+    static constexpr uint32_t kStreams = 32, kSamples = 512;
+    /// What a lobe may reflect that not one sample has met, with a chance of one in a million.
+    static constexpr double kUnseen = 14.0 / (kStreams * kSamples);
+    RunningMoments lobes[kLobeCount][3], totals[3];
+
+    explicit Furnace(const Bsdf& bsdf) {
+        for (uint32_t stream = 0; stream < kStreams; ++stream) {
+            glm::dvec3 sums[kLobeCount]{}, total(0);
+            for (uint32_t i = 0; i < kSamples; ++i) {
+                const SampleStream numbers(SamplerKind::Sobol, 0, stream, {3, 4, i});
+                const BsdfSample s = bsdf.sample(numbers.get1(0), numbers.get2(2));
+                if (s.lobe == Lobe::None) continue;
+                total += glm::dvec3(s.weight);
+                for (int lobe = 0; lobe < kLobeCount; ++lobe)
+                    if (!s.delta) sums[lobe] += glm::dvec3(bsdf.evaluate(s.wi, kLobes[lobe]) / s.pdf);
+                    else if (s.lobe == kLobes[lobe]) sums[lobe] += glm::dvec3(s.weight);
             }
-            for (int c = 0; c < 3; ++c) totals[c].add(drawn ? s.weight[c] : 0);
+            for (int c = 0; c < 3; ++c) {
+                totals[c].add(total[c] / kSamples);
+                for (int lobe = 0; lobe < kLobeCount; ++lobe) lobes[lobe][c].add(sums[lobe][c] / kSamples);
+            }
         }
-        Vec3 albedos(0);
-        const auto expectAlbedo = [&](const RunningMoments& m, double expected, const std::string& name) {
-            EXPECT_NEAR(m.mean(), expected, 0.01 * std::max(expected, 0.25) + kSigmas * std::sqrt(m.meanVariance())) << name;
-        };
-        for (int lobe = 0; lobe < kLobeCount; ++lobe) {
-            const Vec3 albedo = bsdf.albedo(kLobes[lobe]);
-            for (int c = 0; c < 3; ++c) expectAlbedo(lobes[lobe][c], albedo[c], label + ", " + nameOf(kLobes[lobe]));
-            albedos += albedo;
-        }
-        EXPECT_LE(maxComponent(albedos), 1 + 1e-5f) << label;
-        for (int c = 0; c < 3; ++c) {
-            expectAlbedo(totals[c], albedos[c], label + ", all lobes");
-            EXPECT_LE(totals[c].mean(), 1 + kTableError + kSigmas * std::sqrt(totals[c].meanVariance())) << label;
-        }
-    });
+    }
+};
+
+/// The worst of many comparisons, for the log: those that are resolved to 1% of the value.
+struct Worst {
+    double ratio = 0;
+    int resolved = 0, all = 0;
+    std::string label;
+    void add(double found, double expected, double error, const std::string& name) {
+        if (!(expected > 0)) return;
+        ++all;
+        if (!(error < 0.01 * expected)) return;
+        ++resolved;
+        if (const double own = std::abs(found / expected - 1); own > ratio) ratio = own, label = name;
+    }
+    void print(const char* what) const {
+        std::printf("    %s: off by %.2f%% of the value at most (%s), %d of %d values resolved to 1%%\n", what, 100 * ratio,
+                    label.c_str(), resolved, all);
+    }
+};
+
+/// The directional albedo of a lobe by quadrature of evaluate(); that of a smooth one is a closed form.
+LobeIntegral albedoByQuadrature(const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo, Lobe lobe) {
+    const bool stretched = inputs.layered && inputs.layers.anisotropy > 0;
+    const float roughness = lobe == Lobe::Clearcoat ? inputs.layers.clearcoatRoughness : inputs.roughness;
+    const bool specular = lobe != Lobe::Diffuse && lobe != Lobe::Sheen;
+    const bool smooth = specular && roughness < Bsdf::kDeltaRoughness && (lobe == Lobe::Clearcoat || !stretched);
+    if (smooth || isBlack(bsdf.albedo(lobe))) return {bsdf.albedo(lobe), 0};
+    return integrateLobe(bsdf, inputs, wo, lobe);
 }
 
-TEST(BsdfEnergy, QuadratureOfEvaluateEqualsAlbedo) {
-    forEachBsdf({0.02f, 0.06f, 0.3f, 0.6f, 1}, {1, 0.6f, 0.3f, 0.1f},
-                [](const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo, const std::string& label) {
-                    Vec3 total(0);
-                    for (const Lobe lobe : kLobes) {
-                        if (isBlack(bsdf.albedo(lobe))) continue;
-                        if (lobe == Lobe::Clearcoat && inputs.layers.clearcoatRoughness == 0) {
-                            total += bsdf.albedo(lobe);
-                            continue;
-                        }
-                        const LobeIntegral integral = integrateLobe(bsdf, inputs, wo, lobe);
-                        EXPECT_LE(integral.error, 1e-3f) << label << ", " << nameOf(lobe);
-                        expectClose(integral.value, bsdf.albedo(lobe), label + ", " + nameOf(lobe));
-                        total += integral.value;
-                    }
-                    EXPECT_LE(maxComponent(total), 1 + kTableError) << label;
-                });
+// In a furnace of radiance 1 a lobe shows its directional albedo, whatever finds it: samples, quadrature over facets and
+// directions that sample() does not use, or the tables that the engine reads. All together never more than arrives.
+TEST(BsdfEnergy, EveryLobesFurnaceIsItsDirectionalAlbedo) {
+    const std::vector<float> roughnesses{0, 0.02f, 0.06f, 0.3f, 0.6f, 1}, cosines{1, 0.6f, 0.3f, 0.1f};
+    const auto comparisons = static_cast<int64_t>(materials().size() * roughnesses.size() * cosines.size() * 3 * kLobeCount);
+    const double most = studentQuantile(sidakLevel(0.01, comparisons) / 2, Furnace::kStreams - 1);
+    Worst bySamples, byTables;
+    forEachBsdf(roughnesses, cosines, [&](const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo, const std::string& label) {
+        const Furnace furnace(bsdf);
+        Vec3 sum(0);
+        for (int lobe = 0; lobe < kLobeCount; ++lobe) {
+            const LobeIntegral quadrature = albedoByQuadrature(bsdf, inputs, wo, kLobes[lobe]);
+            EXPECT_LE(quadrature.error, 1e-3f) << label << ", " << nameOf(kLobes[lobe]);
+            sum += quadrature.value;
+            for (int c = 0; c < 3; ++c) {
+                const std::string name = label + ", " + nameOf(kLobes[lobe]) + ", channel " + std::to_string(c);
+                const RunningMoments& sampled = furnace.lobes[lobe][c];
+                const double albedo = quadrature.value[c], error = std::sqrt(sampled.meanVariance());
+                const double unseen = error > 0 ? 0 : Furnace::kUnseen;
+                EXPECT_NEAR(sampled.mean(), albedo, 0.01 * albedo + most * error + quadrature.error + unseen) << name;
+                EXPECT_NEAR(bsdf.albedo(kLobes[lobe])[c], albedo, 0.01 * albedo + kKinkError) << name;
+                bySamples.add(sampled.mean(), albedo, most * error + quadrature.error + unseen, name);
+                byTables.add(bsdf.albedo(kLobes[lobe])[c], albedo, kKinkError + quadrature.error, name);
+            }
+        }
+        EXPECT_LE(maxComponent(sum), 1 + kTableError) << label;
+        EXPECT_LE(maxComponent(bsdf.albedo(Lobe::Diffuse) + bsdf.specularAlbedo()), 1 + 1e-5f) << label;
+        for (int c = 0; c < 3; ++c) {
+            const double error = std::sqrt(furnace.totals[c].meanVariance());
+            EXPECT_NEAR(furnace.totals[c].mean(), sum[c], 0.01 * sum[c] + most * error) << label;
+            EXPECT_LE(furnace.totals[c].mean(), 1 + kTableError + most * error) << label;
+        }
+    });
+    bySamples.print("samples against quadrature");
+    byTables.print("tables against quadrature");
+    EXPECT_GT(bySamples.resolved, bySamples.all / 3);
 }
 
 // With nothing absorbed and a smooth layer, what the layer lets through comes out of the white base again.

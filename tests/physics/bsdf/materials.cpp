@@ -21,6 +21,9 @@ const std::vector<NamedMaterial>& materials() {
         add("white plastic", [&](BsdfInputs&) {});
         add("dense plastic", [&](BsdfInputs& i) { i.ior = 2.4f, i.baseColor = red; });
         add("tinted specular", [&](BsdfInputs& i) { i.specularColor = Vec3(8, 2, 0.5f), i.specular = 0.8f; });
+        add("specular-glossiness silver", [&](BsdfInputs& i) {
+            i.baseColor = Vec3(0.05f, 0.04f, 0.03f), i.specularColor = Vec3(0.97f, 0.96f, 0.9f) / 0.04f;
+        });
         add("white metal", [&](BsdfInputs& i) { i.metallic = 1; });
         add("gold", [&](BsdfInputs& i) { i.metallic = 1, i.baseColor = gold; });
         add("half metal", [&](BsdfInputs& i) { i.metallic = 0.5f, i.baseColor = gold; });

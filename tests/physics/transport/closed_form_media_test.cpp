@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "support/transport_scene.h"
+#include "trace/bsdf.h"
+#include "trace/surface.h"
+#include "trace/trace_scene.h"
 
 namespace lumi {
 namespace {
@@ -22,6 +25,94 @@ TEST(Furnace, ConvexBodyUnderConstantSkyShowsItsAlbedo) {
             EXPECT_LT(e.z(albedo), kMostSigmas) << e.mean << " against " << albedo;
         }
     }
+}
+
+/// Radiance 1 from everywhere, made by one kind of light.
+struct Surroundings {
+    const char* name;
+    void (*add)(TinyScene&);
+};
+
+Texture halfBright() {
+    auto grey = std::make_shared<TextureImage>();
+    grey->levels.push_back({{1, 1}, {}, {0.5f, 0.5f, 0.5f, 1}});
+    buildMips(*grey);
+    Texture texture;
+    texture.image = grey;
+    return texture;
+}
+
+/// The six sides of a cube around the origin.
+void addCube(TinyScene& tiny, bool textured) {
+    Light side;
+    side.type = LightType::Rectangle;
+    side.size = Vec2(8);
+    side.radiance = Vec3(textured ? 2 : 1);
+    if (textured) side.radianceTexture = halfBright();
+    for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
+        for (const float sign : {-4.0f, 4.0f})
+            tiny.addLight(side, lookAt(sign * axis, Vec3(0), Vec3(axis.z, axis.x, axis.y)));
+}
+
+void addBall(TinyScene& tiny, bool textured) {
+    Material shell = lambert(0);
+    shell.emission = Vec3(textured ? 2 : 1);
+    if (textured) shell.emissionTexture = halfBright();
+    tiny.add(sphereMesh(4, 24, 12), shell);
+}
+
+const Surroundings kSurroundings[] = {
+    {"sky", [](TinyScene& tiny) { tiny.scene.environment.constant = Vec3(1); }},
+    {"turned sky of an image",
+     [](TinyScene& tiny) {
+         auto image = std::make_shared<Image>(Extent2{8, 4}, 3);
+         image->fill(0.5f);
+         tiny.scene.environment.image = image;
+         tiny.scene.environment.scale = 2;
+         tiny.scene.environment.rotateDeg = 35;
+     }},
+    {"rectangles", [](TinyScene& tiny) { addCube(tiny, false); }},
+    {"textured rectangles", [](TinyScene& tiny) { addCube(tiny, true); }},
+    {"mesh", [](TinyScene& tiny) { addBall(tiny, false); }},
+    {"textured mesh", [](TinyScene& tiny) { addBall(tiny, true); }},
+};
+
+/// Directional albedo of the first instance, a level sheet at the origin, towards `from`: what all its lobes add up to.
+double albedoTowards(TinyScene& tiny, const Vec3& from) {
+    TraceScene scene;
+    scene.posed = tiny.pose();
+    scene.embree.bind(*scene.posed);
+    scene.tables = makeSceneTables(*scene.posed, scene.embree);
+    const Vec3 wo = glm::normalize(from);
+    Surface surface = evaluateSurface(scene.tables, {0, 0, Vec2(0.25f), 0}, wo, 0);
+    surface.inputs.multipleScattering = PathSettings().multipleScattering;
+    const Bsdf bsdf(surface.inputs, Frame(surface.normal).toLocal(wo));
+    return bsdf.albedo(Lobe::Diffuse).y + bsdf.specularAlbedo().y;
+}
+
+TEST(Furnace, OfEveryKindOfLightShowsASheetsAlbedo) {
+    Material coated = lambert(1);
+    coated.specular = 1, coated.roughness = 0.4f;
+    coated.clearcoat = 0.7f, coated.clearcoatRoughness = 0.3f;
+    coated.sheenColor = Vec3(0.6f), coated.sheenRoughness = 0.5f;
+    Material wall = coated;
+    wall.clearcoat = 0, wall.sheenColor = Vec3(0), wall.specular = 0, wall.transmission = 0.6f;
+    const Vec3 from(0.8f, 0.9f, 0.3f);
+    for (const Surroundings& kind : kSurroundings)
+        for (const Material& material : {lambert(0.8f), coated, wall})
+            for (const auto strategy : {DirectStrategy::Mis, DirectStrategy::Light, DirectStrategy::Bsdf}) {
+                TinyScene tiny;
+                tiny.add(rectangleMesh(1, 1, Facing::Y), material);
+                kind.add(tiny);
+                Tracer tracer;
+                tracer.bind(tiny.pose());
+                const double albedo = albedoTowards(tiny, from);
+                const Estimate e = radianceAlong(tracer, from, -from, 8000, plainPaths(1, strategy));
+                // Tables of albedos are off by up to a thousandth.
+                EXPECT_NEAR(e.mean, albedo, kMostSigmas * e.standardError + 1e-3)
+                    << kind.name << ", strategy " << static_cast<int>(strategy);
+                EXPECT_LT(e.standardError, 0.03) << kind.name << ", strategy " << static_cast<int>(strategy);
+            }
 }
 
 TEST(Furnace, ClosedSphereIsTheGeometricSeries) {
