@@ -123,8 +123,10 @@ std::string compareFooter() {
 }
 
 std::string studyFooter() {
-    return "Writes results.json, results.csv, timings.json and report.html. Run it again after an interruption, and it goes\n"
-           "on; results.json and results.csv come out the same bytes as without. References are kept for the next study.\n\n"
+    return "Writes results.json, results.csv, timings.json, report.html, figures/ (inset strips as SVG and PNG) and tables/ (LaTeX).\n"
+           "Run it again after an interruption, and it goes on; results.json and results.csv come out the same bytes as without.\n"
+           "Run it again with other figures, and only those are drawn. References are kept for the next study. A folder belongs to\n"
+           "one study and preset.\n\n"
            "Examples:\n"
            "  lumiscope study convergence --preset quick\n"
            "  lumiscope study my-study.json --out my-results --json\n\n" +

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/progress_line.h"
+#include "app/study_tables.h"
 #include "base/files.h"
 #include "reference/reference.h"
 #include "study/run_study.h"
@@ -34,56 +35,6 @@ std::string progressText(const StudyProgress& progress) {
     }
     return fmt::format("{} {:3.0f}%  {}  job {} of {}  {}", bar, 100 * progress.fraction, left,
                        std::min(progress.job + 1, progress.jobs), progress.jobs, step);
-}
-
-std::string numberText(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
-
-std::string rankText(const StudyRanking* ranking, size_t method) {
-    if (!ranking) return "";
-    for (const StudyRanking::Place& place : ranking->places)
-        if (place.method == method)
-            return place.rank.certain() ? fmt::format("[{}]", place.rank.best)
-                                        : fmt::format("[{}-{}]", place.rank.best, place.rank.worst);
-    return "";
-}
-
-/// One table a scene and number of samples: a row an entry, a column a metric, with interval and place.
-void printTables(const Study& study, const StudyOutcome& outcome) {
-    const StudySummary* last = nullptr;
-    std::vector<std::string> metrics = study.metrics;
-    metrics.insert(metrics.end(), study.temporalMetrics.begin(), study.temporalMetrics.end());
-    const bool ranked = study.seeds.size() > 1;
-    for (const StudySummary& summary : outcome.summaries.metrics) {
-        if (!last || last->scene != summary.scene || last->spp != summary.spp) {
-            const std::string scene = summary.scene == kAllScenes ? "all scenes" : study.scenes[summary.scene].name;
-            std::string head = fmt::format("\n{:<40}", fmt::format("{}, {} spp", scene, summary.spp));
-            for (const std::string& metric : metrics) head += fmt::format("{:>28}", metric);
-            std::puts(head.c_str());
-        }
-        if (!last || last->scene != summary.scene || last->spp != summary.spp || last->method != summary.method) {
-            std::string row = fmt::format("  {:<38}", outcome.plan.methods[summary.method].name);
-            for (const std::string& metric : metrics) {
-                std::string cell = "-";
-                for (const StudySummary& own : outcome.summaries.metrics) {
-                    if (own.scene != summary.scene || own.spp != summary.spp || own.method != summary.method || own.metric != metric)
-                        continue;
-                    const StudyRanking* ranking = nullptr;
-                    for (const StudyRanking& one : outcome.summaries.rankings)
-                        if (one.scene == own.scene && one.spp == own.spp && one.metric == metric) ranking = &one;
-                    cell = numberText(own.interval.mean);
-                    if (own.interval.known())
-                        cell += fmt::format(" ± {} {:<6}", numberText((own.interval.high - own.interval.low) / 2),
-                                            ranked ? rankText(ranking, own.method) : "");
-                }
-                // fmt counts "±" as one column.
-                row += fmt::format("{:>28}", cell);
-            }
-            std::puts(row.c_str());
-        }
-        last = &summary;
-    }
-    if (ranked)
-        std::puts("\n[place] or [best-worst place that the intervals allow]: methods that share places are not told apart.");
 }
 
 /// The quick one where nothing is asked for: the study's own size may be hours.
@@ -120,13 +71,18 @@ int runStudyCommand(const StudyCommandOptions& options, const MachineOptions& ma
         outcome = runStudy(study, run, log);
     }
     if (machine.json) std::fputs(readTextFile(run.out / "results.json").c_str(), stdout);
-    else printTables(study, outcome);
+    else printStudy(outcome);
     if (!machine.quiet) {
         std::fputs(fmt::format("{} jobs run, {} found done, {}\n", outcome.jobsRun, outcome.jobsFound,
                                formatDuration(outcome.seconds))
                        .c_str(),
                    stderr);
-        for (const fs::path& path : outcome.files) std::fputs(fmt::format("Wrote {}\n", path.string()).c_str(), stderr);
+        std::map<std::string, int> folders;
+        for (const fs::path& path : outcome.files) {
+            if (path.parent_path() == run.out) std::fputs(fmt::format("Wrote {}\n", path.string()).c_str(), stderr);
+            else ++folders[path.parent_path().string()];
+        }
+        for (const auto& [folder, count] : folders) std::fputs(fmt::format("Wrote {} files in {}\n", count, folder).c_str(), stderr);
     }
     return 0;
 }

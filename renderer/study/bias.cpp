@@ -9,60 +9,87 @@ namespace lumi {
 namespace {
 
 /// What the images of all seeds of one frame say: each seed's mean squared error, the squared mean error of all of them,
-/// and of all but one.
+/// and of all but one. Over the pixels that are finite in every image and in the reference: a pixel that is missing in one
+/// seed would otherwise count as one without error.
 struct FrameErrors {
     std::vector<double> squared;
     double squaredMean = 0;
     std::vector<double> squaredMeanWithout;
+    int64_t counted = 0, leftOut = 0;  ///< pixels
 };
 
 Image readColour(const std::filesystem::path& path) { return readExr(path).image("", "RGB"); }
 
-/// Pixels that are not finite in any image count as 0 error, as they do in the metrics.
-FrameErrors errorsOf(const std::vector<Image>& images, const Image& reference) {
+bool isFinite(const Image& image, size_t pixel) {
+    const size_t area = static_cast<size_t>(image.extent().area());
+    return std::isfinite(image.data()[pixel]) && std::isfinite(image.data()[pixel + area]) &&
+           std::isfinite(image.data()[pixel + 2 * area]);
+}
+
+/// Adds one channel of one pixel.
+void addDifferences(const std::vector<Image>& images, double reference, size_t at, FrameErrors& errors) {
     const size_t seeds = images.size();
+    const auto difference = [&](size_t k) { return double(images[k].data()[at]) - reference; };
+    double sum = 0;
+    for (size_t k = 0; k < seeds; ++k) {
+        sum += difference(k);
+        errors.squared[k] += difference(k) * difference(k);
+    }
+    const double mean = sum / static_cast<double>(seeds);
+    errors.squaredMean += mean * mean;
+    if (seeds < 3) return;
+    for (size_t k = 0; k < seeds; ++k) {
+        const double others = (sum - difference(k)) / static_cast<double>(seeds - 1);
+        errors.squaredMeanWithout[k] += others * others;
+    }
+}
+
+FrameErrors errorsOf(const std::vector<Image>& images, const Image& reference) {
+    const size_t seeds = images.size(), area = static_cast<size_t>(reference.extent().area());
     FrameErrors errors{std::vector<double>(seeds), 0, std::vector<double>(seeds)};
-    std::vector<double> differences(seeds);
-    for (size_t i = 0; i < reference.size(); ++i) {
-        double sum = 0;
-        for (size_t k = 0; k < seeds; ++k) {
-            const double difference = double(images[k].data()[i]) - double(reference.data()[i]);
-            differences[k] = std::isfinite(difference) ? difference : 0;
-            sum += differences[k];
-            errors.squared[k] += differences[k] * differences[k];
-        }
-        const double mean = sum / static_cast<double>(seeds);
-        errors.squaredMean += mean * mean;
-        if (seeds < 3) continue;
-        for (size_t k = 0; k < seeds; ++k) {
-            const double others = (sum - differences[k]) / static_cast<double>(seeds - 1);
-            errors.squaredMeanWithout[k] += others * others;
+    for (size_t pixel = 0; pixel < area; ++pixel) {
+        bool finite = isFinite(reference, pixel);
+        for (const Image& image : images) finite = finite && isFinite(image, pixel);
+        ++(finite ? errors.counted : errors.leftOut);
+        for (size_t channel = 0; channel < 3 && finite; ++channel) {
+            const size_t at = channel * area + pixel;
+            addDifferences(images, double(reference.data()[at]), at, errors);
         }
     }
-    const double count = static_cast<double>(reference.size());
+    const double count = 3.0 * static_cast<double>(errors.counted);  // none: everything comes out NaN, which is no value
     errors.squaredMean /= count;
     for (size_t k = 0; k < seeds; ++k) errors.squared[k] /= count, errors.squaredMeanWithout[k] /= count;
     return errors;
 }
 
-/// Pseudo-values of the squared bias, a seed each [Quenouille 1956]; none for fewer than three seeds.
-std::vector<double> pseudoValues(const FrameErrors& errors, double noise) {
-    const size_t seeds = errors.squared.size();
-    if (seeds < 3) return {};
-    const double n = static_cast<double>(seeds), all = separateBias(errors.squared, errors.squaredMean, noise).squaredBias;
-    std::vector<double> values;
-    for (size_t k = 0; k < seeds; ++k) {
-        std::vector<double> others;
-        for (size_t j = 0; j < seeds; ++j)
-            if (j != k) others.push_back(errors.squared[j]);
-        values.push_back(n * all - (n - 1) * separateBias(others, errors.squaredMeanWithout[k], noise).squaredBias);
-    }
-    return values;
+/// The parts as they are without one of the seeds.
+BiasVariance withoutSeed(const FrameErrors& errors, size_t k, double noise) {
+    std::vector<double> others = errors.squared;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    return separateBias(others, errors.squaredMeanWithout[k], noise);
 }
 
-void addTo(std::vector<double>& sums, const std::vector<double>& values) {
-    sums.resize(values.size());
-    for (size_t i = 0; i < values.size(); ++i) sums[i] += values[i];
+void addShare(BiasVariance& sum, const BiasVariance& parts, double share) {
+    sum.meanSquaredError += parts.meanSquaredError * share;
+    sum.squaredBias += parts.squaredBias * share;
+    sum.variance += parts.variance * share;
+}
+
+double biasShare(const BiasVariance& parts) {
+    return parts.meanSquaredError > 0 ? parts.squaredBias / parts.meanSquaredError : std::nan("");
+}
+
+void findIntervals(const Study& study, const std::vector<double>& squared, const std::vector<BiasVariance>& without,
+                   StudyBias& bias) {
+    const auto jackknife = [&](double all, auto&& of) {
+        std::vector<double> others;
+        for (const BiasVariance& parts : without) others.push_back(of(parts));
+        return meanInterval(pseudoValues(all, others), study.intervals.level, intervalMethod(study));
+    };
+    bias.meanSquaredError = meanInterval(squared, study.intervals.level, intervalMethod(study));
+    bias.squaredBias = jackknife(bias.parts.squaredBias, [](const BiasVariance& parts) { return parts.squaredBias; });
+    bias.variance = jackknife(bias.parts.variance, [](const BiasVariance& parts) { return parts.variance; });
+    bias.share = jackknife(biasShare(bias.parts), biasShare);
 }
 
 }  // namespace
@@ -71,13 +98,17 @@ std::vector<StudyBias> separateBiases(const Study& study, const StudyPlan& plan,
     using Key = std::tuple<size_t, size_t, int>;  // scene, method, samples
     std::map<Key, std::map<int64_t, std::vector<const StudyRow*>>> groups;
     for (const StudyRow& row : records.rows)
-        if (row.frame >= 0) groups[{row.scene, row.method, row.spp}][row.frame].push_back(&row);
+        if (row.frame >= 0 && row.method < plan.methods.size())
+            groups[{row.scene, row.method, row.spp}][row.frame].push_back(&row);
 
     std::vector<StudyBias> biases;
     for (const auto& [key, frames] : groups) {
-        StudyBias bias{std::get<0>(key), std::get<1>(key), std::get<2>(key), 0, {}, {}, {}};
-        std::vector<double> squared, pseudo;
-        const double count = static_cast<double>(frames.size());
+        StudyBias bias;
+        bias.scene = std::get<0>(key), bias.method = std::get<1>(key), bias.spp = std::get<2>(key);
+        const size_t seeds = frames.begin()->second.size();
+        const double share = 1 / static_cast<double>(frames.size());
+        std::vector<double> squared(seeds);
+        std::vector<BiasVariance> without(seeds < 3 ? 0 : seeds);
         for (const auto& [frame, rows] : frames) {
             std::vector<Image> images;
             for (const StudyRow* row : rows) images.push_back(readColour(row->image));
@@ -85,20 +116,14 @@ std::vector<StudyBias> separateBiases(const Study& study, const StudyPlan& plan,
             for (const StudyReferenceNote& note : records.references)
                 if (rows.front()->reference.filename() == std::filesystem::path(note.file).filename()) noise = note.floor.at("mse");
             const FrameErrors errors = errorsOf(images, readColour(rows.front()->reference));
-            const BiasVariance parts = separateBias(errors.squared, errors.squaredMean, noise);
-            bias.seeds = static_cast<int>(rows.size());
-            bias.parts.meanSquaredError += parts.meanSquaredError / count;
-            bias.parts.squaredBias += parts.squaredBias / count;
-            bias.parts.variance += parts.variance / count;
-            std::vector<double> corrected = errors.squared;
-            for (double& value : corrected) value = (value - noise) / count;
-            addTo(squared, corrected);
-            std::vector<double> values = pseudoValues(errors, noise);
-            for (double& value : values) value /= count;
-            addTo(pseudo, values);
+            addShare(bias.parts, separateBias(errors.squared, errors.squaredMean, noise), share);
+            for (size_t k = 0; k < seeds; ++k) squared[k] += (errors.squared[k] - noise) * share;
+            for (size_t k = 0; k < without.size(); ++k) addShare(without[k], withoutSeed(errors, k, noise), share);
+            bias.pixels += errors.counted, bias.pixelsLeftOut += errors.leftOut;
         }
-        bias.meanSquaredError = meanInterval(squared, study.intervals.level, intervalMethod(study));
-        bias.squaredBias = meanInterval(pseudo, study.intervals.level, intervalMethod(study));
+        bias.seeds = static_cast<int>(seeds);
+        bias.biasShare = biasShare(bias.parts);
+        findIntervals(study, squared, without, bias);
         biases.push_back(std::move(bias));
     }
     return biases;

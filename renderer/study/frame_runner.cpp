@@ -1,5 +1,7 @@
 #include "study/frame_runner.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "study/study_file.h"
 
@@ -81,7 +83,8 @@ std::vector<RunningMethod> methodsOf(const JobContext& context, const StudyJob& 
         for (const StudyValue& value : method.set)
             if (!isDocumentId(entry.module, value.id)) running.set.push_back(value);
         if (!entry.tune.empty())
-            for (const StudyValue& value : context.tuned(method.entry, job.spp)) running.set.push_back(value);
+            for (const StudyValue& value : context.tuned(method.entry, job.spp))
+                if (!std::count(method.fixed.begin(), method.fixed.end(), value.id)) running.set.push_back(value);
         methods.push_back(std::move(running));
     }
     return methods;
@@ -91,8 +94,20 @@ FrameRunner::FrameRunner(const JobContext& context, const StudyJob& job, std::ve
     : context_(context), methods_(std::move(methods)), document_(jobDocument(context, job, methods_)),
       problem_(problemDocument(context, job)), engine_(context.log), next_(context.study.frames.begin) {}
 
+void checkJobValues(const JobContext& context, const StudyJob& job) {
+    std::vector<RunningMethod> methods;
+    if (job.kind == StudyJob::Kind::Tune) methods.push_back({context.study.entries[job.entry].module + "@t0", {}});
+    else methods = methodsOf(context, job);
+    Document document = jobDocument(context, job, methods), problem = problemDocument(context, job);
+    if (const auto& step = context.study.frames.step) setAll(document, step->set), setAll(problem, step->set);
+}
+
 FrameOutput FrameRunner::advance(const SignalSet& signals) {
     const int64_t number = next_++;
+    if (const auto& step = context_.study.frames.step; step && step->frame == number) {
+        setAll(document_, step->set);
+        setAll(problem_, step->set);
+    }
     const float time = timeOf(context_.study, document_, number);
     document_.setTime(time);
     problem_.setTime(time);

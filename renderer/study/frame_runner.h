@@ -16,6 +16,9 @@ struct RunningMethod {
 /// The methods of a measuring job, with what tuning chose.
 std::vector<RunningMethod> methodsOf(const JobContext& context, const StudyJob& job);
 
+/// Does the scene take every value that the job sets? Throws as FrameRunner does; nothing is drawn.
+void checkJobValues(const JobContext& context, const StudyJob& job);
+
 /// Drives the frame engine over the study's frames, from an empty history on.
 class FrameRunner {
 public:

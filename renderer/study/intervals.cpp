@@ -67,9 +67,17 @@ void bootstrap(std::span<const double> values, double level, Interval& interval)
     interval.high = end(1 - (1 - level) / 2);
 }
 
+std::vector<double> finiteOf(std::span<const double> values) {
+    std::vector<double> finite;
+    for (const double value : values)
+        if (std::isfinite(value)) finite.push_back(value);
+    return finite;
+}
+
 }  // namespace
 
-Interval meanInterval(std::span<const double> values, double level, IntervalMethod method) {
+Interval meanInterval(std::span<const double> all, double level, IntervalMethod method) {
+    const std::vector<double> values = finiteOf(all);
     Interval interval;
     interval.count = static_cast<int64_t>(values.size());
     if (values.empty()) {
@@ -114,6 +122,14 @@ std::vector<Rank> rankMethods(const std::vector<std::vector<double>>& values, bo
             --ranks[firstIsBetter ? a : b].worst;
         }
     return ranks;
+}
+
+std::vector<double> pseudoValues(double all, std::span<const double> without) {
+    std::vector<double> values;
+    if (without.size() < 3) return values;
+    const double n = static_cast<double>(without.size());
+    for (const double other : without) values.push_back(n * all - (n - 1) * other);
+    return values;
 }
 
 BiasVariance separateBias(std::span<const double> squaredErrors, double squaredMeanError, double referenceNoise) {

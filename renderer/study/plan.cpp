@@ -28,6 +28,25 @@ std::string textOf(const std::vector<StudyAxis>& axes) {
     return text;
 }
 
+/// The entries of ablations once more, each time without one stage.
+void addStages(const Study& study, std::vector<StudyMethod>& methods) {
+    for (const StudyAblation& ablation : study.ablations) {
+        const auto whole = std::find_if(methods.begin(), methods.end(), [&](const StudyMethod& method) {
+            return study.entries[method.entry].name == ablation.entry && method.coordinates.empty() && !method.whole;
+        });
+        const size_t index = static_cast<size_t>(whole - methods.begin());
+        for (const StudyAblation::Stage& stage : ablation.stages) {
+            StudyMethod method = methods[index];
+            method.name += " without " + stage.name;
+            method.instance = fmt::format("{}@m{}", study.entries[method.entry].module, methods.size());
+            method.whole = index;
+            method.stage = stage.name;
+            for (const StudyValue& value : stage.set) method.set.push_back(value), method.fixed.push_back(value.id);
+            methods.push_back(std::move(method));
+        }
+    }
+}
+
 std::vector<StudyMethod> listMethods(const Study& study) {
     std::vector<StudyMethod> methods;
     const auto add = [&](size_t index, const std::vector<StudyValue>& swept) {
@@ -41,6 +60,7 @@ std::vector<StudyMethod> listMethods(const Study& study) {
         for (const StudyValue& value : swept) {
             method.coordinates.push_back(value.text);
             method.set.push_back(value);
+            method.fixed.push_back(value.id);
             shown += (shown.empty() ? "" : ", ") + value.id + "=" + value.text;
         }
         if (!swept.empty()) method.name += " [" + shown + "]";
@@ -54,6 +74,7 @@ std::vector<StudyMethod> listMethods(const Study& study) {
         else
             for (const std::vector<StudyValue>& point : combinations(study.sweep->axes)) add(i, point);
     }
+    addStages(study, methods);
     return methods;
 }
 
@@ -77,6 +98,7 @@ std::string commonDefinition(const Study& study, const StudyScene& scene, int sp
                                    study.frames.begin, study.frames.end, spp);
     text += fmt::format("still {};fps {};reference {};", study.frames.still, study.frames.fps, study.reference.spp);
     text += textOf(scene.set) + textOf(study.set) + "ref " + textOf(study.reference.set);
+    if (study.frames.step) text += fmt::format("step {} {}", study.frames.step->frame, textOf(study.frames.step->set));
     return text;
 }
 
@@ -199,11 +221,8 @@ StudyPlan planStudy(const Study& study) {
 
 int64_t lastFrame(const Study& study, StudyJob::Kind kind) {
     if (kind == StudyJob::Kind::Tune) return study.tuning->frame;
+    if (study.measures("lag")) return study.frames.end - 1;
     return std::max(study.frames.measure.back(), study.temporalMetrics.empty() ? 0 : study.frames.temporalEnd - 1);
-}
-
-double jobWork(const Study& study, const StudyJob& job) {
-    return static_cast<double>(lastFrame(study, job.kind) - study.frames.begin + 1) * (job.spp + 0.5);
 }
 
 }  // namespace lumi

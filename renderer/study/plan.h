@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -6,13 +7,16 @@
 
 namespace lumi {
 
-/// One row of the tables: an entry, at one point of the sweep.
+/// One row of the tables: an entry, at one point of the sweep, or without one of its stages.
 struct StudyMethod {
     size_t entry = 0;   ///< index into Study::entries
     std::string name;   ///< the entry's, with what is swept: `svgf [sigma-l=4]`
     std::string instance;                  ///< name in the frame engine: `svgf@m3`
     std::vector<std::string> coordinates;  ///< values on the sweep's axes; empty: not swept
-    std::vector<StudyValue> set;           ///< the entry's values, then the sweep's
+    std::vector<StudyValue> set;           ///< the entry's values, then the sweep's or those that switch a stage off
+    std::vector<std::string> fixed;        ///< ids that tuning may not set: the sweep's, and those that switch a stage off
+    std::optional<size_t> whole;           ///< of a stage switched off: the method that has it
+    std::string stage;                     ///< its name
 };
 
 /// What is run at once, and is done again as a whole when it was interrupted: one scene, sample count and seed, and all
@@ -47,8 +51,6 @@ bool isDocumentId(const std::string& module, const std::string& id);
 /// Letters, digits, - and . kept, everything else becomes -.
 std::string fileNameOf(const std::string& name);
 
-/// Samples a pixel that the methods of a job read, over all frames that are run; for a progress bar.
-double jobWork(const Study& study, const StudyJob& job);
 /// The last frame that a job runs.
 int64_t lastFrame(const Study& study, StudyJob::Kind kind);
 

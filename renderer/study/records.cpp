@@ -62,7 +62,8 @@ void StudyRecords::add(const StudyPlan& plan, const StudyJob& job, const json& r
     if (job.kind == StudyJob::Kind::Tune) return addChoice(job, result, *this);
     std::map<int64_t, std::string> files;
     for (const json& reference : result.at("references")) {
-        StudyReferenceNote note{job.scene, reference.at("frame"), reference.at("file"), reference.at("exposure"), numbers(reference.at("floor"))};
+        StudyReferenceNote note{job.scene, reference.at("frame"), reference.at("file"), reference.at("exposure"), numbers(reference.at("floor")),
+                                numbers(reference.at("own")), reference.at("nonfinite_pixels")};
         files[note.frame] = note.file;
         const bool known = std::any_of(references.begin(), references.end(), [&](const auto& r) { return r.file == note.file; });
         if (!known) references.push_back(std::move(note));
@@ -82,7 +83,7 @@ void StudyRecords::add(const StudyPlan& plan, const StudyJob& job, const json& r
         row.scene = job.scene, row.method = methodNamed(plan, sequence.at("method")), row.spp = job.spp, row.seed = job.seed;
         for (const auto& [metric, value] : sequence.at("metrics").items()) {
             row.metrics[metric] = number(value.at("mean"));
-            StudySeries one{row.scene, row.method, row.spp, row.seed, metric, {}};
+            StudySeries one{row.scene, row.method, row.spp, row.seed, metric, value.at("begin"), {}};
             for (const json& frame : value.at("frames")) one.values.push_back(number(frame));
             series.push_back(std::move(one));
         }

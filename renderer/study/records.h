@@ -23,12 +23,13 @@ struct StudyRow {
     double value(const std::string& metric) const;
 };
 
-/// Values of one metric over the consecutive frames of a sequence.
+/// Values of one metric over the consecutive frames of a sequence; of lag, the response to the step.
 struct StudySeries {
     size_t scene = 0, method = 0;
     int spp = 1, seed = 0;
     std::string metric;
-    std::vector<double> values;  ///< of frames StudyFrames::temporalBegin and on
+    int64_t begin = 0;           ///< frame of the first value
+    std::vector<double> values;
 };
 
 struct StudyReferenceNote {
@@ -37,6 +38,8 @@ struct StudyReferenceNote {
     std::string file;
     float exposureEv = 0;
     std::map<std::string, double> floor;  ///< by metric: what the reference's noise alone is worth
+    std::map<std::string, double> own;    ///< of metrics that judge one image: the reference's
+    int64_t nonFinitePixels = 0;
 };
 
 /// What tuning chose.

@@ -73,6 +73,10 @@ std::shared_ptr<StudyReferenceFrame> StudyReferences::make(const Document& probl
     for (const std::string& metric : study_.metrics)
         frame->floor[metric] = measured(metric, frame->half, frame->image, exposure);
     frame->floor["mse"] = measured("mse", frame->half, frame->image, exposure);
+    if (study_.measures("cpbd")) frame->own["cpbd"] = measured("cpbd", frame->image, frame->image, exposure);
+    ImagePair itself{frame->image, frame->image};
+    itself.prepare();
+    frame->nonFinitePixels = itself.nonFinitePixels;
     return frame;
 }
 

@@ -23,6 +23,8 @@ struct StudyReferenceFrame {
     /// half - image = (half - other half) / 2 has the variance of the mean; for the others it is the least difference
     /// that means anything.
     std::map<std::string, double> floor;
+    std::map<std::string, double> own;  ///< of metrics that judge one image (cpbd): the reference's
+    int64_t nonFinitePixels = 0;
     bool cached = false;
 };
 

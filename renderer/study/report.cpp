@@ -2,30 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/isa.h"
 #include "measure/measure.h"
 #include "study/report_resources.h"
+#include "study/results.h"
 #include "study/run_job.h"
 #include "study/temporal_metrics.h"
 
 namespace lumi {
 using Json = nlohmann::ordered_json;
 namespace {
-
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) switch (c) {
-            case '&': out += "&amp;"; break;
-            case '<': out += "&lt;"; break;
-            case '>': out += "&gt;"; break;
-            case '"': out += "&quot;"; break;
-            default: out += c;
-        }
-    return out;
-}
 
 /// JSON that may stand in a script element: nothing in it closes the element.
 std::string scriptJson(const Json& value) {
@@ -70,7 +60,7 @@ std::string facts(const Study& study, const StudyRecords& records) {
                                                        {"Reference", fmt::format("{} spp", study.reference.spp)},
                                                        {"Images measured", std::to_string(records.rows.size())}};
     std::string html;
-    for (const auto& [name, value] : all) html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", name, escaped(value));
+    for (const auto& [name, value] : all) html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", name, escapedMarkup(value));
     return html;
 }
 
@@ -81,13 +71,13 @@ Json studyData(const Study& study, const StudyPlan& plan) {
         for (const StudyValue& value : method.set) set.push_back(value.id + " = " + value.text);
         methods.push_back({{"name", method.name}, {"entry", study.entries[method.entry].name},
                            {"module", study.entries[method.entry].module}, {"set", std::move(set)},
-                           {"coordinates", method.coordinates}});
+                           {"coordinates", method.coordinates}, {"stage", method.stage}});
     }
     Json axes = Json::array();
     if (study.sweep)
         for (const StudyAxis& axis : study.sweep->axes) axes.push_back({{"id", axis.id}, {"values", axis.values}});
     return {{"seeds", study.seeds}, {"level", study.intervals.level}, {"frames", framesText(study)},
-            {"temporal_begin", study.frames.temporalBegin}, {"axes", std::move(axes)}, {"methods", std::move(methods)}};
+            {"axes", std::move(axes)}, {"methods", std::move(methods)}};
 }
 
 Json metricData(const Study& study) {
@@ -106,61 +96,87 @@ Json metricData(const Study& study) {
     return all;
 }
 
-/// Metrics of consecutive frames, means over the seeds.
+/// Metrics of sequences frame by frame, with intervals over the seeds.
 Json seriesData(const Study& study, const StudyPlan& plan, const StudyRecords& records) {
-    std::map<std::tuple<size_t, int, std::string, size_t>, std::pair<std::vector<double>, int>> sums;
-    for (const StudySeries& one : records.series) {
-        auto& [sum, count] = sums[{one.scene, one.spp, one.metric, one.method}];
-        sum.resize(one.values.size());
-        for (size_t i = 0; i < sum.size(); ++i) sum[i] += one.values[i];
-        ++count;
-    }
+    std::map<std::tuple<size_t, int, std::string, size_t>, std::vector<const StudySeries*>> groups;
+    for (const StudySeries& one : records.series) groups[{one.scene, one.spp, one.metric, one.method}].push_back(&one);
     Json list = Json::array();
-    for (auto& [key, entry] : sums) {
-        for (double& value : entry.first) value /= entry.second;
+    for (const auto& [key, all] : groups) {
+        Json values = Json::array(), low = Json::array(), high = Json::array();
+        for (size_t i = 0; i < all.front()->values.size(); ++i) {
+            std::vector<double> seeds;
+            for (const StudySeries* one : all) seeds.push_back(i < one->values.size() ? one->values[i] : std::nan(""));
+            const Json interval = intervalJson(meanInterval(seeds, study.intervals.level));
+            values.push_back(interval["mean"]), low.push_back(interval["low"]), high.push_back(interval["high"]);
+        }
         list.push_back({{"scene", study.scenes[std::get<0>(key)].name}, {"spp", std::get<1>(key)}, {"metric", std::get<2>(key)},
-                        {"entry", plan.methods[std::get<3>(key)].name}, {"values", entry.first}});
+                        {"entry", plan.methods[std::get<3>(key)].name}, {"begin", all.front()->begin}, {"values", std::move(values)},
+                        {"low", std::move(low)}, {"high", std::move(high)}});
     }
     return list;
 }
 
-/// Puts values in the place of {{name}}; what is put in is not looked at again.
-std::string filled(const std::string& page, const std::map<std::string, std::string>& values) {
-    std::string out;
-    for (size_t at = 0; at < page.size();) {
-        const size_t open = page.find("{{", at), close = page.find("}}", open);
-        if (open == std::string::npos || close == std::string::npos) return out + page.substr(at);
-        out += page.substr(at, open - at) + values.at(page.substr(open + 2, close - open - 2));
-        at = close + 2;
-    }
-    return out;
+Json figureData(const ReportContent& content) {
+    Json list = Json::array();
+    for (const DrawnFigure& figure : content.figures) list.push_back({{"name", figure.name}, {"caption", figure.caption}, {"svg", figure.svg}});
+    return list;
+}
+
+Json latexData(const ReportContent& content) {
+    Json list = Json::array();
+    for (const LatexTable& table : content.tables) list.push_back({{"name", table.name}, {"title", table.title}, {"text", table.text}});
+    return list;
 }
 
 }  // namespace
 
-std::string studyReport(const Study& study, const StudyPlan& plan, const StudyRecords& records, const Json& results,
-                        const Json& times) {
-    Json shown = results;
+std::string escapedMarkup(const std::string& text) {
+    std::string out;
+    for (const char c : text) switch (c) {
+            case '&': out += "&amp;"; break;
+            case '<': out += "&lt;"; break;
+            case '>': out += "&gt;"; break;
+            case '"': out += "&quot;"; break;
+            default: out += c;
+        }
+    return out;
+}
+
+std::string filledTemplate(const std::string& page, const std::string& open, const std::string& close,
+                           const std::map<std::string, std::string>& values) {
+    std::string out;
+    for (size_t at = 0; at < page.size();) {
+        const size_t begin = page.find(open, at), end = page.find(close, begin);
+        if (begin == std::string::npos || end == std::string::npos) return out + page.substr(at);
+        out += page.substr(at, begin - at) + values.at(page.substr(begin + open.size(), end - begin - open.size()));
+        at = end + close.size();
+    }
+    return out;
+}
+
+std::string studyReport(const Study& study, const StudyPlan& plan, const StudyRecords& records, const ReportContent& content) {
+    Json shown = content.results;
     shown.erase("rows");  // the tables need the summaries only; the rows stand in results.csv
-    const Json data = {{"study", studyData(study, plan)}, {"results", std::move(shown)}, {"times", times},
+    const Json data = {{"study", studyData(study, plan)}, {"results", std::move(shown)}, {"times", content.times},
                        {"pictures", reportPictures(study, plan, records)}, {"series", seriesData(study, plan, records)},
-                       {"metrics", metricData(study)}};
+                       {"metrics", metricData(study)}, {"figures", figureData(content)}, {"latex", latexData(content)}};
     const std::string command = fmt::format("lumiscope study {}{}", study.path.string(),
                                             study.preset.empty() ? "" : " --preset " + study.preset);
     const std::string kicker = "Study" + (study.paper.empty() ? "" : " after " + study.paper);
-    return filled(kReportHtml,
-                  {{"title", escaped(study.title)},
-                   {"kicker", escaped(kicker)},
-                   {"description", study.description.empty() ? "" : "<p class=\"lead\">" + escaped(study.description) + "</p>"},
-                   {"facts", facts(study, records)},
-                   {"footer", fmt::format("Made by <code>{}</code> · instruction set {} · study file {}. Numbers of every image "
-                                          "stand in results.csv and results.json beside this file.",
-                                          escaped(command), isaName(activeIsa()), study.digest)},
-                   {"css", kReportCss},
-                   {"data", scriptJson(data)},
-                   {"charts", kChartsJs},
-                   {"viewer", kViewerJs},
-                   {"report", kReportJs}});
+    return filledTemplate(
+        kReportHtml, "{{", "}}",
+        {{"title", escapedMarkup(study.title)},
+         {"kicker", escapedMarkup(kicker)},
+         {"description", study.description.empty() ? "" : "<p class=\"lead\">" + escapedMarkup(study.description) + "</p>"},
+         {"facts", facts(study, records)},
+         {"footer", fmt::format("Made by <code>{}</code> · instruction set {} · study file {}. Numbers of every image stand in results.csv and "
+                                "results.json beside this file.",
+                                escapedMarkup(command), isaName(activeIsa()), study.digest)},
+         {"css", kReportCss},
+         {"data", scriptJson(data)},
+         {"charts", kChartsJs},
+         {"viewer", kViewerJs},
+         {"report", std::string(kReportJs) + "\n" + kReportTimesJs + "\n" + kReportPageJs}});
 }
 
 }  // namespace lumi

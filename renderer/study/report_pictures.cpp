@@ -14,7 +14,7 @@ namespace lumi {
 using Json = nlohmann::ordered_json;
 namespace {
 
-/// Beyond this a report shows the ends of a sweep only: each picture is in the file.
+/// Beyond this a report shows no methods without a stage, and the ends of a sweep only: each picture is in the file.
 constexpr size_t kMostMethods = 9;
 
 std::string pngUri(const Image& image, const char* channels, const DisplaySettings& settings) {
@@ -43,11 +43,12 @@ std::string hexColour(const Vec3& colour) {
 }
 
 /// The rows of one set of pictures: those of the first seed, a method each.
-std::vector<const StudyRow*> rowsOf(const Study& study, const StudyRecords& records, size_t scene, int64_t frame, int spp) {
+std::vector<const StudyRow*> rowsOf(const Study& study, const StudyPlan& plan, const StudyRecords& records, size_t scene, int64_t frame, int spp) {
     std::vector<const StudyRow*> rows;
     for (const StudyRow& row : records.rows)
         if (row.scene == scene && row.frame == frame && row.spp == spp && row.seed == study.seeds.front()) rows.push_back(&row);
     std::sort(rows.begin(), rows.end(), [](const StudyRow* a, const StudyRow* b) { return a->method < b->method; });
+    if (rows.size() > kMostMethods) std::erase_if(rows, [&](const StudyRow* row) { return plan.methods[row->method].whole.has_value(); });
     if (rows.size() > kMostMethods) rows.erase(rows.begin() + kMostMethods - 1, rows.end() - 1);
     return rows;
 }
@@ -121,7 +122,7 @@ Json reportPictures(const Study& study, const StudyPlan& plan, const StudyRecord
     for (size_t scene = 0; scene < study.scenes.size(); ++scene)
         for (const int64_t frame : frames)
             for (const int samples : spp)
-                if (const auto rows = rowsOf(study, records, scene, frame, samples); !rows.empty())
+                if (const auto rows = rowsOf(study, plan, records, scene, frame, samples); !rows.empty())
                     sets.push_back(pictureSet(study, plan, records, rows));
     return sets;
 }

@@ -14,14 +14,6 @@ namespace {
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json intervalJson(const Interval& interval) {
-    return {{"mean", number(interval.mean)},
-            {"standard_error", interval.known() ? number(interval.standardError) : Json(nullptr)},
-            {"low", interval.known() ? number(interval.low) : Json(nullptr)},
-            {"high", interval.known() ? number(interval.high) : Json(nullptr)},
-            {"count", interval.count}};
-}
-
 Json valuesJson(const std::map<std::string, double>& values) {
     Json object = Json::object();
     for (const auto& [key, value] : values) object[key] = number(value);
@@ -49,6 +41,7 @@ Json rowsJson(const Study& study, const StudyPlan& plan, const StudyRecords& rec
         const StudyMethod& method = plan.methods[row.method];
         Json entry = {{"scene", study.scenes[row.scene].name}, {"frame", frameJson(row.frame)}, {"entry", method.name},
                       {"spp", row.spp}, {"seed", row.seed}, {"module", study.entries[method.entry].module}};
+        if (method.whole) entry["without"] = method.stage;
         if (study.sweep && !method.coordinates.empty())
             for (size_t i = 0; i < method.coordinates.size(); ++i)
                 entry["sweep"][study.sweep->axes[i].id] = method.coordinates[i];
@@ -70,6 +63,7 @@ Json summaryJson(const Study& study, const StudyPlan& plan, const std::vector<St
         entry["metric"] = summary.metric;
         entry.update(intervalJson(summary.interval));
         entry["uncorrected_mean"] = number(summary.uncorrected);
+        entry["missing"] = summary.missing;
         list.push_back(std::move(entry));
     }
     return list;
@@ -99,7 +93,12 @@ Json biasJson(const Study& study, const StudyPlan& plan, const StudySummaries& a
         entry["mse"] = intervalJson(bias.meanSquaredError);
         entry["squared_bias"] = intervalJson(bias.squaredBias);
         entry["squared_bias"]["mean"] = number(bias.parts.squaredBias);
-        entry["variance"] = number(bias.parts.variance);
+        entry["variance"] = intervalJson(bias.variance);
+        entry["variance"]["mean"] = number(bias.parts.variance);
+        entry["share_of_bias"] = intervalJson(bias.share);
+        entry["share_of_bias"]["mean"] = number(bias.biasShare);
+        entry["pixels"] = bias.pixels;
+        entry["pixels_left_out"] = bias.pixelsLeftOut;
         list.push_back(std::move(entry));
     }
     return list;
@@ -129,6 +128,30 @@ Json equivalentsJson(const Study& study, const StudyPlan& plan, const StudySumma
     return list;
 }
 
+Json stagesJson(const Study& study, const StudyPlan& plan, const StudySummaries& all) {
+    Json list = Json::array();
+    for (const StudyStageEffect& stage : all.stages) {
+        Json entry = headJson(study, plan, stage.scene, stage.whole, stage.spp);
+        entry["stage"] = plan.methods[stage.without].stage;
+        entry["metric"] = stage.metric;
+        entry["whole"] = intervalJson(stage.wholeMean);
+        entry["without"] = intervalJson(stage.withoutMean);
+        entry["difference"] = intervalJson(stage.difference);
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
+Json nonFiniteJson(const Study& study, const StudyPlan& plan, const StudySummaries& all) {
+    Json list = Json::array();
+    for (const StudyNonFinite& found : all.nonFinite) {
+        Json entry = headJson(study, plan, found.scene, found.method, found.spp);
+        entry["pixels"] = found.pixels, entry["images"] = found.images, entry["of_images"] = found.allImages;
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
 Json tuningJson(const Study& study, const StudyRecords& records) {
     Json list = Json::array();
     for (const StudyChoice& choice : records.choices) {
@@ -146,7 +169,8 @@ Json referencesJson(const Study& study, const StudyRecords& records) {
     Json list = Json::array();
     for (const StudyReferenceNote& note : records.references)
         list.push_back({{"scene", study.scenes[note.scene].name}, {"frame", note.frame}, {"spp", study.reference.spp},
-                        {"file", note.file}, {"floor", valuesJson(note.floor)}});
+                        {"file", note.file}, {"floor", valuesJson(note.floor)}, {"own", valuesJson(note.own)},
+                        {"nonfinite_pixels", note.nonFinitePixels}});
     return list;
 }
 
@@ -164,6 +188,14 @@ std::string csvNumber(const std::map<std::string, double>& values, const std::st
 
 }  // namespace
 
+Json intervalJson(const Interval& interval) {
+    return {{"mean", number(interval.mean)},
+            {"standard_error", interval.known() ? number(interval.standardError) : Json(nullptr)},
+            {"low", interval.known() ? number(interval.low) : Json(nullptr)},
+            {"high", interval.known() ? number(interval.high) : Json(nullptr)},
+            {"count", interval.count}};
+}
+
 Json resultsJson(const Study& study, const StudyPlan& plan, const StudyRecords& records, const StudySummaries& summaries) {
     Json all;
     all["study"] = {{"name", study.name}, {"title", study.title}, {"paper", study.paper}, {"preset", study.preset},
@@ -178,6 +210,8 @@ Json resultsJson(const Study& study, const StudyPlan& plan, const StudyRecords& 
     all["rankings"] = rankingsJson(study, plan, summaries);
     all["bias_and_variance"] = biasJson(study, plan, summaries);
     all["convergence"] = slopesJson(study, plan, summaries);
+    if (!study.ablations.empty()) all["ablations"] = stagesJson(study, plan, summaries);
+    all["nonfinite"] = nonFiniteJson(study, plan, summaries);
     if (!study.pairs.empty()) all["equivalent_samples"] = equivalentsJson(study, plan, summaries);
     return all;
 }

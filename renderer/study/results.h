@@ -3,6 +3,7 @@
 #include <string>
 
 #include "study/summary.h"
+#include "study/times.h"
 
 namespace lumi {
 
@@ -15,9 +16,11 @@ nlohmann::ordered_json resultsJson(const Study& study, const StudyPlan& plan, co
 /// those whose reference noise is taken off; numbers in the shortest form that reads back as the same.
 std::string resultsCsv(const Study& study, const StudyPlan& plan, const StudyRecords& records);
 
-/// timings.json: wall-clock medians of this machine, a row per (scene, entry, spp), and what equal times and equal errors
-/// come to for the study's pairs. Never the same twice.
-nlohmann::ordered_json timingsJson(const Study& study, const StudyPlan& plan, const StudyRecords& records,
-                                   const StudySummaries& summaries);
+/// timings.json: wall-clock medians of this machine, a row per (scene, entry, spp), what equal times and equal errors come
+/// to for the study's pairs, and what stages cost. Never the same twice.
+nlohmann::ordered_json timingsJson(const Study& study, const StudyPlan& plan, const StudyTimes& times);
+
+/// {"mean", "standard_error", "low", "high", "count"}; null where nothing is known.
+nlohmann::ordered_json intervalJson(const Interval& interval);
 
 }  // namespace lumi

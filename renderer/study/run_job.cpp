@@ -10,6 +10,7 @@
 #include "image/exr.h"
 #include "math/statistics.h"
 #include "measure/measure.h"
+#include "measure/temporal.h"
 #include "study/frame_runner.h"
 #include "study/temporal_metrics.h"
 
@@ -59,42 +60,80 @@ json measureRow(const JobContext& context, const Image& image, const StudyRefere
     return {{"metrics", metrics}, {"corrected", corrected}, {"nonfinite_pixels", pair.nonFinitePixels}};
 }
 
-/// Differences of consecutive frames, a method each.
-class TemporalSeries {
+/// 1 where a surface is seen that does not shine itself, nor does a pixel beside it: emission and sky, which methods pass
+/// by, follow a step at once, and are so bright that they would drown what is filtered.
+Image litSurfaces(const Signals& signals) {
+    const Image &emission = signals[Signal::Emission], &depth = signals[Signal::Depth];
+    Image mask(depth.extent(), 1);
+    mask.fill(1);
+    for (int y = 0; y < depth.height(); ++y)
+        for (int x = 0; x < depth.width(); ++x) {
+            const bool shines = emission.at(0, x, y) > 0 || emission.at(1, x, y) > 0 || emission.at(2, x, y) > 0;
+            if (!shines && std::isfinite(depth.at(0, x, y))) continue;
+            for (int v = std::max(y - 1, 0); v <= std::min(y + 1, depth.height() - 1); ++v)
+                for (int u = std::max(x - 1, 0); u <= std::min(x + 1, depth.width() - 1); ++u) mask.at(0, u, v) = 0;
+        }
+    return mask;
+}
+
+/// Metrics of sequences, a method each: differences of consecutive frames, and how a step in the light is followed.
+class SequenceMeter {
 public:
-    TemporalSeries(const Study& study, size_t methods) : study_(study), values_(methods) {}
+    SequenceMeter(const Study& study, size_t methods) : study_(study), values_(methods) {}
 
     SignalSet signalsAt(int64_t frame) const {
-        return measures(frame) || measures(frame + 1) ? temporalSignals() : SignalSet();
+        SignalSet signals = differs(frame) || differs(frame + 1) ? temporalSignals() : SignalSet();
+        if (lags() && frame == step()) signals |= SignalSet{Signal::Emission, Signal::Depth};
+        return signals;
+    }
+    /// Are the references of before (the frame before the step) and after it wanted?
+    bool wantsReference(int64_t frame) const { return lags() && (frame == step() - 1 || frame == step()); }
+    void addReference(const FrameOutput& frame, const Image& reference) {
+        if (frame.number == step() - 1) {
+            before_ = reference;
+            return;
+        }
+        const Image mask = litSurfaces(*frame.signals);
+        lags_.assign(values_.size(), LagMeter(before_, reference, &mask));
     }
     /// The results of a frame, a method each.
     void add(const FrameOutput& frame, const std::vector<std::shared_ptr<const Image>>& images, float exposureEv) {
-        for (size_t i = 0; i < images.size() && measures(frame.number); ++i) {
+        for (size_t i = 0; i < images.size() && differs(frame.number); ++i) {
             const TemporalInput input{*images[i], *previous_[i], *frame.signals, *previousSignals_, exposureEv};
-            for (const std::string& id : study_.temporalMetrics) values_[i][id].push_back(findTemporalMetric(id)->measure(input));
+            for (const std::string& id : study_.temporalMetrics)
+                if (const auto measure = findTemporalMetric(id)->measure) values_[i][id].push_back(measure(input));
         }
+        for (size_t i = 0; i < lags_.size(); ++i) lags_[i].add(*images[i]);
         previous_ = images;
         previousSignals_ = frame.signals;
     }
     json toJson(size_t method) const {
         json metrics = json::object();
-        for (const std::string& id : study_.temporalMetrics) {
-            const std::vector<double>& values = values_[method].at(id);
+        for (const auto& [id, values] : values_[method]) {
             double sum = 0;
             for (const double value : values) sum += value;
-            metrics[id] = {{"mean", sum / static_cast<double>(values.size())}, {"frames", values}};
+            metrics[id] = {{"mean", sum / static_cast<double>(values.size())}, {"begin", study_.frames.temporalBegin}, {"frames", values}};
+        }
+        if (!lags_.empty()) {
+            const int64_t lag = lags_[method].lag();
+            metrics["lag"] = {{"mean", lag < 0 ? json(nullptr) : json(lag)}, {"begin", step()}, {"frames", lags_[method].curve()}};
         }
         return metrics;
     }
 
 private:
-    bool measures(int64_t frame) const {
-        return !study_.temporalMetrics.empty() && frame >= study_.frames.temporalBegin && frame < study_.frames.temporalEnd;
+    bool lags() const { return study_.measures("lag"); }
+    int64_t step() const { return study_.frames.step->frame; }
+    bool differs(int64_t frame) const {
+        const bool any = study_.measures("temporal") || study_.measures("temporal_reprojected");
+        return any && frame >= study_.frames.temporalBegin && frame < study_.frames.temporalEnd;
     }
     const Study& study_;
     std::vector<std::shared_ptr<const Image>> previous_;
     std::shared_ptr<const Signals> previousSignals_;
     std::vector<std::map<std::string, std::vector<double>>> values_;
+    Image before_;
+    std::vector<LagMeter> lags_;
 };
 
 void writeImage(const std::filesystem::path& path, const Image& image) {
@@ -103,7 +142,21 @@ void writeImage(const std::filesystem::path& path, const Image& image) {
     writeExr(path, layers);
 }
 
+/// Writes the reference's image, unless it is there.
+json referenceJson(const Study& study, const StudyJob& job, int64_t frame, const StudyReferenceFrame& reference,
+                   float exposureEv, const std::filesystem::path& out) {
+    const std::string file = fmt::format("references/{}-{}.{:04}.exr", fileNameOf(study.scenes[job.scene].name), reference.key, frame);
+    if (!std::filesystem::exists(out / file)) writeImage(out / file, reference.image);
+    return {{"frame", frame}, {"file", file}, {"exposure", exposureEv}, {"floor", reference.floor}, {"own", reference.own},
+            {"nonfinite_pixels", reference.nonFinitePixels}};
+}
+
 }  // namespace
+
+int64_t referencesOf(const Study& study, const StudyJob& job) {
+    if (job.kind == StudyJob::Kind::Tune) return 1;
+    return static_cast<int64_t>(study.frames.measure.size()) + (study.measures("lag") ? 2 : 0);
+}
 
 bool isSquaredError(const std::string& metric) { return metric == "mse" || metric == "rmse" || metric == "relmse"; }
 
@@ -118,37 +171,36 @@ json runMeasureJob(const JobContext& context, const StudyJob& job, const std::fi
                    const std::filesystem::path& out, json& times) {
     const Study& study = context.study;
     FrameRunner runner(context, job, methodsOf(context, job));
-    TemporalSeries temporal(study, job.methods.size());
+    SequenceMeter sequence(study, job.methods.size());
     JobTimes measuredTimes;
     json result = {{"rows", json::array()}, {"sequences", json::array()}, {"references", json::array()}};
     const int64_t last = lastFrame(study, job.kind);
-    const double references = static_cast<double>(study.frames.measure.size());
-    const double all = jobWork(study, job) + references * context.referenceWork;
-    double done = 0;
+    const double frames = static_cast<double>(last - study.frames.begin + 1);
+    double done = 0, sampled = 0;
+    const auto reference = [&](int64_t number) {
+        auto made = runner.reference([&](uint64_t samples, uint64_t target) {
+            context.progress(done / frames, sampled + static_cast<double>(samples),
+                             fmt::format("reference of frame {}, {} of {} spp", number, samples, target));
+        });
+        sampled += study.reference.spp;
+        context.progress(done / frames, sampled, fmt::format("frame {}", number));
+        return made;
+    };
     while (runner.next() <= last) {
         const int64_t number = runner.next();
-        context.progress(done / all, fmt::format("frame {}", number));
-        const FrameOutput frame = runner.advance(temporal.signalsAt(number));
+        context.progress(done / frames, sampled, fmt::format("frame {}", number));
+        const FrameOutput frame = runner.advance(sequence.signalsAt(number));
         measuredTimes.add(frame);
-        done += jobWork(study, job) / static_cast<double>(last - study.frames.begin + 1);
-        const bool measured = std::binary_search(study.frames.measure.begin(), study.frames.measure.end(), number);
-        std::shared_ptr<const StudyReferenceFrame> reference;
-        if (measured) {
-            reference = runner.reference([&](uint64_t samples, uint64_t target) {
-                const double part = context.referenceWork * static_cast<double>(samples) / static_cast<double>(target);
-                context.progress((done + part) / all, fmt::format("reference of frame {}, {} of {} spp", number, samples, target));
-            });
-            done += context.referenceWork;
-            const std::string file = fmt::format("references/{}-{}.{:04}.exr", fileNameOf(study.scenes[job.scene].name),
-                                                 reference->key, number);
-            if (!std::filesystem::exists(out / file)) writeImage(out / file, reference->image);
-            result["references"].push_back({{"frame", number}, {"file", file}, {"exposure", runner.exposure()}, {"floor", reference->floor}});
-        }
+        done += 1;
+        if (sequence.wantsReference(number)) sequence.addReference(frame, reference(number)->image);
         std::vector<std::shared_ptr<const Image>> images;
         for (const RunningMethod& method : runner.methods()) images.push_back(frame.results.at(method.instance));
-        temporal.add(frame, images, runner.exposure());
-        for (size_t i = 0; i < images.size() && measured; ++i) {
-            json row = measureRow(context, *images[i], *reference, runner.exposure());
+        sequence.add(frame, images, runner.exposure());
+        if (!std::binary_search(study.frames.measure.begin(), study.frames.measure.end(), number)) continue;
+        const auto measured = reference(number);
+        result["references"].push_back(referenceJson(study, job, number, *measured, runner.exposure(), out));
+        for (size_t i = 0; i < images.size(); ++i) {
+            json row = measureRow(context, *images[i], *measured, runner.exposure());
             row["frame"] = number;
             row["method"] = context.plan.methods[job.methods[i]].name;
             result["rows"].push_back(std::move(row));
@@ -157,7 +209,7 @@ json runMeasureJob(const JobContext& context, const StudyJob& job, const std::fi
     }
     if (!study.temporalMetrics.empty())
         for (size_t i = 0; i < job.methods.size(); ++i)
-            result["sequences"].push_back({{"method", context.plan.methods[job.methods[i]].name}, {"metrics", temporal.toJson(i)}});
+            result["sequences"].push_back({{"method", context.plan.methods[job.methods[i]].name}, {"metrics", sequence.toJson(i)}});
     times = measuredTimes.toJson(context, job);
     return result;
 }
@@ -178,10 +230,12 @@ json runTuneJob(const JobContext& context, const StudyJob& job) {
     std::optional<FrameOutput> frame;
     const double all = static_cast<double>(study.tuning->frame - study.frames.begin + 1);
     while (runner.next() <= study.tuning->frame) {
-        context.progress(static_cast<double>(runner.next() - study.frames.begin) / all, "tuning " + entry.name);
+        context.progress(static_cast<double>(runner.next() - study.frames.begin) / all, 0, "tuning " + entry.name);
         frame = runner.advance({});
     }
-    const auto reference = runner.reference({});
+    const auto reference = runner.reference([&](uint64_t samples, uint64_t target) {
+        context.progress(1, static_cast<double>(samples), fmt::format("reference of frame {}, {} of {} spp", study.tuning->frame, samples, target));
+    });
     const Metric& metric = findMetric(study.tuning->metric);
     json result = {{"candidates", json::array()}};
     double best = std::numeric_limits<double>::quiet_NaN();

@@ -20,15 +20,14 @@ struct JobContext {
     std::stop_token stop;
     /// Values that tuning chose for an entry at a number of samples, in this scene.
     std::function<std::vector<StudyValue>(size_t entry, int spp)> tuned;
-    /// Share of the job that is done, in [0,1], and what it is at; on any thread.
-    std::function<void(double fraction, const std::string& step)> progress;
-    double referenceWork = 0;  ///< samples a pixel that the reference of each measured frame takes; 0 if it is there
+    /// Share of the job's frames that are done, samples a pixel of references, and what it is at; on any thread.
+    std::function<void(double frames, double referenceSamples, const std::string& step)> progress;
 };
 
 /// What a job leaves is the same every time, as JSON and images; wall-clock times are apart.
 ///     Measure: {"rows": [{"frame", "method", "metrics": {id: value}, "corrected": {id: value}, "nonfinite_pixels"}],
-///               "sequences": [{"method", "metrics": {id: {"mean", "frames": [values]}}}],
-///               "references": [{"frame", "file", "exposure", "floor": {id: value}}]}
+///               "sequences": [{"method", "metrics": {id: {"mean", "begin", "frames": [values]}}}],
+///               "references": [{"frame", "file", "exposure", "floor": {id: value}, "own": {id: value}, "nonfinite_pixels"}]}
 ///     Tune:    {"chosen": {id: value}, "candidates": [{"values": {id: value}, "metric": value}]}
 /// Runs the job's frames from an empty history and measures; before it returns every image that is measured is in `folder`
 /// as `<method>.<frame>.exr`, and its reference under `out`/references. `times`: {"frames", "trace_ms", "methods": {name: {"run_ms", "stages_ms"}}},
@@ -37,6 +36,9 @@ struct JobContext {
 nlohmann::json runMeasureJob(const JobContext& context, const StudyJob& job, const std::filesystem::path& folder,
                              const std::filesystem::path& out, nlohmann::json& times);
 nlohmann::json runTuneJob(const JobContext& context, const StudyJob& job);
+
+/// How many references a job compares with; one may be several of them.
+int64_t referencesOf(const Study& study, const StudyJob& job);
 
 /// `<method>.<frame>.exr`.
 std::string imageFileName(size_t method, int64_t frame);

@@ -1,12 +1,8 @@
 #include "study/run_study.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -15,36 +11,20 @@
 #include "base/isa.h"
 #include "base/timer.h"
 #include "scene/load.h"
+#include "study/figures.h"
+#include "study/frame_runner.h"
+#include "study/latex.h"
 #include "study/report.h"
 #include "study/results.h"
 #include "study/run_job.h"
+#include "study/study_clock.h"
 #include "study/study_file.h"
+#include "study/study_folder.h"
 
 namespace lumi {
 namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
-
-/// Holds the folder while it lives; the kernel lets go of it when the process ends, however it ends.
-class FolderLock {
-public:
-    explicit FolderLock(const fs::path& folder) {
-        std::error_code failure;
-        fs::create_directories(folder, failure);
-        const fs::path path = folder / ".lock";
-        file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-        if (file_ < 0) throwUsage({"cannot be written", folder.string(), "a folder for results", ""});
-        if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
-        ::close(file_);
-        throwUsage({"another study runs in this folder", folder.string(), "another folder, or its end", ""});
-    }
-    ~FolderLock() { ::close(file_); }
-    FolderLock(const FolderLock&) = delete;
-    FolderLock& operator=(const FolderLock&) = delete;
-
-private:
-    int file_;
-};
 
 /// Results depend on the program that made them.
 std::string programDigest() { return digest(readFile("/proc/self/exe")); }
@@ -68,47 +48,38 @@ Study withScenesThere(Study study, MessageLog& log) {
 class StudyRunner {
 public:
     StudyRunner(const Study& study, const StudyOptions& options, MessageLog& log)
-        : study_(withScenesThere(study, log)), options_(options), log_(log), lock_(options.out),
-          references_(study_, options.referenceCache, log) {
-        outcome_.plan = planStudy(study_);
-    }
+        : study_(withScenesThere(study, log)), options_(options), log_(log), folder_(study_, options.out),
+          references_(study_, options.referenceCache, log), plan_(planStudy(study_)), clock_(study_, plan_) {}
 
     StudyOutcome run() {
-        weighJobs();
-        const std::string program = programDigest();
-        for (job_ = 0; job_ < outcome_.plan.jobs.size(); ++job_) {
-            const StudyJob& job = outcome_.plan.jobs[job_];
-            const std::string content = job.definition + sceneOf(job)->contentDigest + isaName(activeIsa()) + program;
-            const fs::path folder =
-                options_.out / "jobs" /
-                (job.id + "-" + digest({reinterpret_cast<const uint8_t*>(content.data()), content.size()}).substr(0, 8));
-            folders_.insert(folder.filename().string());
-            if (fs::exists(folder / "job.json")) ++outcome_.jobsFound;
-            else runJob(job, folder);
-            doneWork_ += work_[job_];
-            collect(job, folder);
+        findJobs();
+        for (job_ = 0; job_ < plan_.jobs.size(); ++job_) {
+            if (!isThere(job_)) runJob(job_);
+            collect(job_);
         }
-        report(0, "writing the report");
+        report("writing the report");
         finish();
         return std::move(outcome_);
     }
 
 private:
-    /// Work in samples a pixel: frames, and each reference once.
-    void weighJobs() {
-        std::set<std::string> known;
-        for (const StudyJob& job : outcome_.plan.jobs) {
-            const double work = jobWork(study_, job);
-            std::string problem = std::to_string(job.scene);
-            for (const StudyValue& value : job.sampling)
-                if (definesImage(value.id)) problem += value.id + value.text;
-            const double frames = job.kind == StudyJob::Kind::Tune ? 1 : static_cast<double>(study_.frames.measure.size());
-            const bool isNew = known.insert(problem + (job.kind == StudyJob::Kind::Tune ? " tune" : "")).second;
-            referenceWork_.push_back(isNew ? study_.reference.spp : 0);
-            work_.push_back(work + frames * referenceWork_.back());
-            allWork_ += work_.back();
+    /// Looks at every scene, and whether it takes the values that are set, before hours go into the first: the folder of a
+    /// job is named after all that its result depends on.
+    void findJobs() {
+        const std::string program = programDigest();
+        for (job_ = 0; job_ < plan_.jobs.size(); ++job_) {
+            const StudyJob& job = plan_.jobs[job_];
+            const std::string content = job.definition + sceneOf(job)->contentDigest + isaName(activeIsa()) + program;
+            folders_.push_back(job.id + "-" + digest({reinterpret_cast<const uint8_t*>(content.data()), content.size()}).substr(0, 8));
+            checkJobValues(contextOf(job), job);
+            if (!isThere(job_)) continue;
+            ++outcome_.jobsFound;
+            clock_.found(job_);
         }
     }
+
+    fs::path folderOf(size_t job) const { return options_.out / "jobs" / folders_[job]; }
+    bool isThere(size_t job) const { return fs::exists(folderOf(job) / "job.json"); }
 
     std::shared_ptr<const Scene> sceneOf(const StudyJob& job) {
         if (!scene_ || sceneIndex_ != job.scene) {
@@ -119,36 +90,47 @@ private:
                 if (value.id == "scene.variant") load.variant = value.text;
                 if (value.id == "scene.index") load.sceneIndex = std::atoi(value.text.c_str());
             }
-            report(0, "loading " + wanted.name);
+            report("loading " + wanted.name);
             scene_ = loadScene(findStudyScene(study_, wanted), log_, load);
             sceneIndex_ = job.scene;
         }
         return scene_;
     }
 
-    void runJob(const StudyJob& job, const fs::path& folder) {
-        const JobContext context{study_, outcome_.plan, sceneOf(job), references_, log_, options_.stop,
-                                 [&](size_t entry, int spp) { return tunedValues(job.scene, entry, spp); },
-                                 [&](double fraction, const std::string& step) { report(fraction, step); },
-                                 referenceWork_[job_]};
+    JobContext contextOf(const StudyJob& job) {
+        return {study_, plan_, sceneOf(job), references_, log_, options_.stop,
+                [this, scene = job.scene](size_t entry, int spp) { return tunedValues(scene, entry, spp); },
+                [this](double frames, double samples, const std::string& step) {
+                    const std::lock_guard lock(reporting_);
+                    clock_.at(frames, samples, nowS());
+                    tell(step);
+                }};
+    }
+
+    void runJob(size_t index) {
+        const StudyJob& job = plan_.jobs[index];
+        const fs::path folder = folderOf(index);
+        const JobContext context = contextOf(job);
+        clock_.begin(index, nowS());
         json times;
         const json result = job.kind == StudyJob::Kind::Tune ? runTuneJob(context, job)
                                                              : runMeasureJob(context, job, folder, options_.out, times);
         writeFileAtomically(folder / "times.json", std::string_view(times.dump(1)));
         writeFileAtomically(folder / "job.json", std::string_view(result.dump(1)));
         ++outcome_.jobsRun;
-        workedWork_ += work_[job_];
+        clock_.end(nowS());
     }
 
     /// Every job's results are read from its file, whether it ran now or before.
-    void collect(const StudyJob& job, const fs::path& folder) {
+    void collect(size_t index) {
+        const fs::path folder = folderOf(index);
         const auto read = [&](const char* name) {
             const json value = json::parse(readTextFile(folder / name), nullptr, false);
             if (value.is_discarded())
                 throwBadInput({"is damaged", (folder / name).string(), "what a study wrote; remove it to run the job again", ""});
             return value;
         };
-        outcome_.records.add(outcome_.plan, job, read("job.json"), read("times.json"), folder, options_.out);
+        outcome_.records.add(plan_, plan_.jobs[index], read("job.json"), read("times.json"), folder, options_.out);
     }
 
     std::vector<StudyValue> tunedValues(size_t scene, size_t entry, int spp) const {
@@ -159,56 +141,64 @@ private:
         return values;
     }
 
-    void report(double fraction, const std::string& step) {
+    double nowS() const { return total_.elapsedMs() / 1000; }
+
+    void report(const std::string& step) {
+        const std::lock_guard lock(reporting_);
+        tell(step);
+    }
+    void tell(const std::string& step) {
         if (!options_.progress) return;
-        StudyProgress progress{job_, outcome_.plan.jobs.size(), outcome_.jobsFound, step, 0, total_.elapsedMs() / 1000, -1};
-        const double inJob = job_ < work_.size() ? fraction * work_[job_] : 0;
-        if (job_ < work_.size())
-            progress.step = fmt::format("{}: {}", outcome_.plan.jobs[job_].id, step);
-        progress.fraction = allWork_ > 0 ? std::min((doneWork_ + inJob) / allWork_, 1.0) : 0;
-        const double worked = workedWork_ + inJob;
-        if (worked > 0) progress.leftS = progress.elapsedS * (allWork_ - doneWork_ - inJob) / worked;
+        StudyProgress progress{job_, plan_.jobs.size(), outcome_.jobsFound, step, clock_.fraction(), nowS(), clock_.leftS(nowS())};
+        if (job_ < plan_.jobs.size()) progress.step = fmt::format("{}: {}", plan_.jobs[job_].id, step);
         options_.progress(progress);
     }
 
     void finish() {
-        outcome_.summaries = summarize(study_, outcome_.plan, outcome_.records);
-        const auto write = [&](const char* name, const std::string& text) {
-            writeFileAtomically(options_.out / name, std::string_view(text));
+        outcome_.summaries = summarize(study_, plan_, outcome_.records);
+        outcome_.times = summarizeTimes(study_, plan_, outcome_.records);
+        std::set<std::string> kept;
+        const auto write = [&](const std::string& name, std::span<const uint8_t> bytes) {
+            writeFileAtomically(options_.out / name, bytes);
             outcome_.files.push_back(options_.out / name);
+            kept.insert(fs::path(name).filename().string());
         };
-        const auto results = resultsJson(study_, outcome_.plan, outcome_.records, outcome_.summaries);
-        const auto times = timingsJson(study_, outcome_.plan, outcome_.records, outcome_.summaries);
-        write("results.csv", resultsCsv(study_, outcome_.plan, outcome_.records));
-        write("timings.json", times.dump(1) + "\n");
-        write("report.html", studyReport(study_, outcome_.plan, outcome_.records, results, times));
-        write("results.json", results.dump(1) + "\n");
-        removeOthers();
-        outcome_.seconds = total_.elapsedMs() / 1000;
-    }
-
-    /// Jobs of an earlier form of the study, and what an interruption left.
-    void removeOthers() const {
-        std::error_code ignored;
-        for (const fs::directory_entry& entry : fs::directory_iterator(options_.out / "jobs", ignored))
-            if (!folders_.contains(entry.path().filename().string())) fs::remove_all(entry.path(), ignored);
-        std::vector<fs::path> partial;
-        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(options_.out, ignored))
-            if (entry.path().extension() == ".tmp") partial.push_back(entry.path());
-        for (const fs::path& path : partial) fs::remove(path, ignored);
+        const auto writeText = [&](const std::string& name, const std::string& text) {
+            write(name, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+        };
+        const auto results = resultsJson(study_, plan_, outcome_.records, outcome_.summaries);
+        const auto times = timingsJson(study_, plan_, outcome_.times);
+        const std::vector<DrawnFigure> figures = drawFigures(study_, plan_, outcome_.records, log_);
+        const std::vector<LatexTable> tables = latexTables(study_, plan_, outcome_.summaries, outcome_.times);
+        for (const DrawnFigure& figure : figures) {
+            write("figures/" + figure.name + ".png", figure.png);
+            writeText("figures/" + figure.name + ".svg", figure.svg);
+        }
+        for (const LatexTable& table : tables) writeText("tables/" + table.name + ".tex", table.text);
+        writeText("tables/all.tex", latexDocument(study_, figures, tables));
+        writeText("results.csv", resultsCsv(study_, plan_, outcome_.records));
+        writeText("timings.json", times.dump(1) + "\n");
+        writeText("report.html", studyReport(study_, plan_, outcome_.records, {results, times, figures, tables}));
+        writeText("results.json", results.dump(1) + "\n");
+        for (const StudyReferenceNote& note : outcome_.records.references) kept.insert(fs::path(note.file).filename().string());
+        folder_.keepOnly({folders_.begin(), folders_.end()}, kept);
+        outcome_.study = study_;
+        outcome_.plan = plan_;
+        outcome_.seconds = nowS();
     }
 
     const Study study_;
     const StudyOptions& options_;
     MessageLog& log_;
-    FolderLock lock_;
+    StudyFolder folder_;
     StudyReferences references_;
+    const StudyPlan plan_;
+    StudyClock clock_;
     StudyOutcome outcome_;
-    std::set<std::string> folders_;
+    std::vector<std::string> folders_;
     std::shared_ptr<const Scene> scene_;
     size_t sceneIndex_ = 0, job_ = 0;
-    std::vector<double> work_, referenceWork_;
-    double allWork_ = 0, doneWork_ = 0, workedWork_ = 0;
+    std::mutex reporting_;
     Timer total_;
 };
 

@@ -8,6 +8,7 @@
 #include "base/messages.h"
 #include "study/study.h"
 #include "study/summary.h"
+#include "study/times.h"
 
 namespace lumi {
 
@@ -24,14 +25,16 @@ struct StudyOptions {
     std::filesystem::path out;             ///< folder; made if missing
     std::filesystem::path referenceCache;  ///< empty: references are made again each time
     std::stop_token stop{};
-    std::function<void(const StudyProgress&)> progress{};  ///< on the calling thread, often
+    std::function<void(const StudyProgress&)> progress{};  ///< often; one call at a time, on any thread
 };
 
 struct StudyOutcome {
+    Study study;  ///< without the scenes that were left out: indices of scenes are into this
     StudyPlan plan;
     StudyRecords records;
     StudySummaries summaries;
-    std::vector<std::filesystem::path> files;  ///< results.json, results.csv, timings.json, report.html
+    StudyTimes times;
+    std::vector<std::filesystem::path> files;  ///< results.json, results.csv, timings.json, report.html, figures/, tables/
     size_t jobsRun = 0, jobsFound = 0;
     double seconds = 0;
 };
@@ -40,9 +43,10 @@ struct StudyOutcome {
 /// under `jobs`, whose job.json is written last and atomically: after an interruption at any moment the study goes on
 /// with the first unfinished job, and results.json and results.csv come out byte for byte as if it had never been
 /// interrupted. Jobs of another definition, scene, instruction set or build of the program do not count, and are removed
-/// at the end. One process works in a folder at a time.
-/// Throws Error(Usage) if another does, Error(BadInput) for a scene or value that is not there, Error(Interrupted),
-/// Error(Resources).
+/// at the end. Scenes and values are checked before the first job; figures and tables are made anew each time, from what the
+/// jobs left.
+/// Throws Error(Usage) if the folder is not this study's (StudyFolder), Error(BadInput) for a scene or value that is not
+/// there, Error(Interrupted), Error(Resources).
 StudyOutcome runStudy(const Study& study, const StudyOptions& options, MessageLog& log);
 
 }  // namespace lumi

@@ -39,6 +39,12 @@ struct StudyEntry {
     std::vector<int> spp;         ///< instead of the study's; empty: those
 };
 
+/// From one frame on the document has other values: a lamp is switched on, a wall is painted.
+struct StudyStep {
+    int64_t frame = 0;            ///< the first that has them
+    std::vector<StudyValue> set;  ///< each defines the image
+};
+
 /// Frames [begin, end) run in order from an empty history; some are measured.
 struct StudyFrames {
     int64_t begin = 0, end = 1;
@@ -46,6 +52,7 @@ struct StudyFrames {
     int64_t temporalBegin = 0, temporalEnd = 0;   ///< frames whose difference to the one before is measured
     bool still = false;                           ///< time stands at the first frame
     float fps = 0;                                ///< 0: the scene's
+    std::optional<StudyStep> step;
 };
 
 struct StudyReference {
@@ -68,6 +75,32 @@ struct StudyTuning {
 /// "What would `against` reach in the time of `entry`, and how long would it take to reach its error?"
 struct StudyPair {
     std::string entry, against;
+};
+
+/// Each stage of an entry switched off in turn.
+struct StudyAblation {
+    std::string entry;
+    struct Stage {
+        std::string name;
+        std::vector<StudyValue> set;  ///< what switches it off, on top of the entry's values
+    };
+    std::vector<Stage> stages;
+};
+
+/// An inset strip: one picture with its crops marked, and each crop as the methods show it.
+struct StudyFigure {
+    std::string name;                  ///< of its files
+    std::string scene;                 ///< empty: the study's first that is there
+    int64_t frame = -1;                ///< one that is measured; -1: the last
+    int spp = 0;                       ///< 0: the least of the study
+    std::string input;                 ///< entry that is shown first, as the input; empty: the first whose module is none
+    std::vector<std::string> entries;  ///< empty: all
+    std::string metric = "flip";       ///< of the maps, and the value under each crop
+    struct Crop {
+        std::string name;
+        double x = 0, y = 0, width = 0, height = 0;  ///< shares of the picture, from its top left
+    };
+    std::vector<Crop> crops;
 };
 
 /// How the uncertainty of a number is found.
@@ -101,14 +134,17 @@ struct Study {
     std::vector<int> spp{1}, seeds{1};
     StudyReference reference;
     std::vector<std::string> metrics;          ///< of images, as `list metrics` names them
-    std::vector<std::string> temporalMetrics;  ///< of consecutive frames
+    std::vector<std::string> temporalMetrics;  ///< of sequences
     std::optional<StudySweep> sweep;
     std::optional<StudyTuning> tuning;
     std::vector<StudyPair> pairs;
+    std::vector<StudyAblation> ablations;
+    std::vector<StudyFigure> figures;
     StudyIntervals intervals;
     StudyPictures pictures;
 
     const StudyEntry* entry(const std::string& name) const;
+    bool measures(const std::string& metric) const;
 };
 
 /// Seeds of a reference's two halves; a study's own seeds are below.

@@ -21,13 +21,6 @@ constexpr uint64_t kMaxStudyBytes = uint64_t(16) << 20;
 /// What a preset may not change: the file itself.
 const std::set<std::string> kFileKeys{"$schema", "version", "title", "paper", "description", "presets"};
 
-void checkFileName(const JsonTree& tree, const JsonValue& value, const std::string& name) {
-    const bool good = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-        return std::isalnum(c) || c == '-' || c == '_' || c == '.' || c == '+' || c == ' ' || c == '=' || c == '/';
-    });
-    if (!good) refuseValue(tree, value, "name", "letters, digits, spaces and any of - _ . + = /");
-}
-
 template <class Thing>
 void refuseTwin(const JsonTree& tree, const JsonValue& at, const std::vector<Thing>& earlier, const std::string& name,
                 const char* kind) {
@@ -90,15 +83,6 @@ void readEntries(const JsonTree& tree, const JsonValue& section, Study& study) {
                            "\"tuning\": {\"frame\": ...} in the study", ""});
         study.entries.push_back(std::move(entry));
     }
-}
-
-/// The name of an entry that exists.
-std::string readEntryName(const JsonTree& tree, const JsonValue& value, const Study& study, const std::string& name) {
-    const std::string text = readText(tree, value, name);
-    std::vector<std::string> names;
-    for (const StudyEntry& entry : study.entries) names.push_back(entry.name);
-    if (!study.entry(text)) refuseName(tree, value.at, "entry", text, names);
-    return text;
 }
 
 void readSweep(const JsonTree& tree, const JsonValue* section, Study& study) {
@@ -170,8 +154,12 @@ void readMetrics(const JsonTree& tree, const JsonValue* section, Study& study) {
             refuseName(tree, item.at, "metric", item.text, known);
         (findTemporalMetric(item.text) ? study.temporalMetrics : study.metrics).push_back(item.text);
     }
-    if (!study.temporalMetrics.empty() && study.frames.temporalBegin >= study.frames.temporalEnd)
-        refuseValue(tree, *section, "metrics", "two frames or more for \"" + study.temporalMetrics.front() + '"');
+    for (const std::string& id : study.temporalMetrics) {
+        if (id != "lag" && study.frames.temporalBegin >= study.frames.temporalEnd)
+            refuseValue(tree, *section, "metrics", "two frames or more for \"" + id + '"');
+        if (id == "lag" && !(study.frames.step && study.frames.still))
+            refuseValue(tree, *section, "metrics", "\"frames\" with a \"step\" and \"still\": true for \"lag\"");
+    }
 }
 
 void readReference(const JsonTree& tree, const JsonValue* section, StudyReference& reference) {
@@ -205,6 +193,8 @@ void readBody(const JsonTree& tree, const JsonValue& merged, Study& study) {
     readEntries(tree, top.need("entries"), study);
     readSweep(tree, top.find("sweep"), study);
     readPairs(tree, top.find("pairs"), study);
+    readAblations(tree, top.find("ablations"), study);
+    readFigures(tree, top.find("figures"), study);
     study.intervals = readIntervals(tree, top.find("intervals"));
     study.pictures = readPictures(tree, top.find("pictures"));
     top.finish();
@@ -231,6 +221,10 @@ const StudyEntry* Study::entry(const std::string& wanted) const {
     for (const StudyEntry& entry : entries)
         if (entry.name == wanted) return &entry;
     return nullptr;
+}
+
+bool Study::measures(const std::string& metric) const {
+    return std::count(metrics.begin(), metrics.end(), metric) + std::count(temporalMetrics.begin(), temporalMetrics.end(), metric) > 0;
 }
 
 Study parseStudy(const std::string& text, const fs::path& path, const std::string& preset) {

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "measure/measure.h"
 #include "reconstruct/catalog.h"
+#include "study/study_file.h"
 
 namespace lumi {
 namespace {
@@ -39,6 +40,21 @@ std::vector<int64_t> readMeasured(const JsonTree& tree, const JsonValue& value, 
     if (measured.front() < frames.begin || measured.back() >= frames.end)
         refuseValue(tree, value, "measure", fmt::format("frames from {} to {}", frames.begin, frames.end - 1));
     return measured;
+}
+
+StudyStep readStep(const JsonTree& tree, const JsonValue& section, const StudyFrames& frames) {
+    ObjectReader reader(tree, section, "step");
+    StudyStep step;
+    step.frame = readWholes(tree, reader.need("frame"), "frame", frames.begin + 1, frames.end - 1).front();
+    const JsonValue& set = reader.need("set");
+    step.set = readValues(tree, &set, "set");
+    if (step.set.empty()) refuseValue(tree, set, "set", "at least one value");
+    for (const StudyValue& value : step.set)
+        if (!definesImage(value.id))
+            throwBadInput({fmt::format("\"{}\" does not change what a converged image shows", value.id), value.where,
+                           "a parameter of the scene: material., light., environment. ...", ""});
+    reader.finish();
+    return step;
 }
 
 }  // namespace
@@ -135,6 +151,7 @@ StudyFrames readFrames(const JsonTree& tree, const JsonValue* section) {
             refuseValue(tree, *temporal, "temporal",
                         fmt::format("frames after {} and up to {}", frames.begin, frames.end));
     }
+    if (const JsonValue* step = reader.find("step")) frames.step = readStep(tree, *step, frames);
     frames.still = reader.toggle("still").value_or(false);
     frames.fps = static_cast<float>(reader.number("fps", 0.1, 1000).value_or(0));
     reader.finish();

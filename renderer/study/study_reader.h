@@ -23,6 +23,15 @@ std::vector<StudyValue> readValues(const JsonTree& tree, const JsonValue* sectio
 /// {"id": [values]}.
 std::vector<StudyAxis> readAxes(const JsonTree& tree, const JsonValue* section, const std::string& name);
 
+/// Refuses names that are no good in results and file names.
+void checkFileName(const JsonTree& tree, const JsonValue& value, const std::string& name);
+/// The name of an entry that exists.
+std::string readEntryName(const JsonTree& tree, const JsonValue& value, const Study& study, const std::string& name);
+
+/// Of a study whose entries, sweep and frames are read.
+void readAblations(const JsonTree& tree, const JsonValue* section, Study& study);
+void readFigures(const JsonTree& tree, const JsonValue* section, Study& study);
+
 StudyFrames readFrames(const JsonTree& tree, const JsonValue* section);
 StudyIntervals readIntervals(const JsonTree& tree, const JsonValue* section);
 StudyPictures readPictures(const JsonTree& tree, const JsonValue* section);

@@ -71,9 +71,37 @@ Json framesSchema() {
                    {"measure", {{"description", "Frames that are compared with a reference; by default the last."},
                                 {"anyOf", {wholes(0, last, "Frame numbers."), Json{{"const", "all"}}}}}},
                    {"temporal", pair},
+                   {"step", closed({{"frame", whole(1, last, "The first frame that has the values.")}, {"set", reference("values")}},
+                                   "From a frame on parameters of the scene have other values; \"lag\" measures how long the methods take to follow.",
+                                   {"frame", "set"})},
                    {"still", {{"type", "boolean"}, {"description", "Time stands at the first frame."}}},
                    {"fps", {{"type", "number"}, {"minimum", 0.1}, {"maximum", 1000}, {"description", "Frames a second; by default the scene's."}}}},
                   "Frames run in order from an empty history; by default one.");
+}
+
+Json ablationsSchema() {
+    Json stage = closed({{"name", text("Of the stage: rows are called `<entry> without <name>`.")}, {"set", reference("values")}},
+                        "A stage, and the values that switch it off.", {"name", "set"});
+    return listOf(closed({{"entry", text("An entry that is not swept.")}, {"stages", listOf(std::move(stage), "In turn.")}},
+                         "An entry without each of its stages.", {"entry", "stages"}),
+                  "What every stage of a method is worth: error and time without it.", 0);
+}
+
+Json figuresSchema() {
+    Json box = listOf({{"type", "number"}, {"minimum", 0}, {"maximum", 1}}, "Left, top, width and height, as shares of the picture.", 4);
+    box["maxItems"] = 4;
+    Json crops = listOf(closed({{"name", text("Beside its row.")}, {"box", std::move(box)}}, "A crop.", {"box"}), "What is enlarged.");
+    crops["maxItems"] = 6;
+    return listOf(closed({{"name", text("Of its files, figures/<name>.png and .svg.")},
+                          {"scene", text("A scene of the study; by default the first.")},
+                          {"frame", whole(0, 10'000'000, "A frame that is measured; by default the last.")},
+                          {"spp", whole(1, 65536, "A sample count; by default the least.")},
+                          {"input", text("The entry that stands first; by default the first whose module is none.")},
+                          {"entries", listOf(text("An entry's name."), "Which are shown; by default all.")},
+                          {"metric", oneOfNames(metricIds(false, true), "Of the maps and the numbers; by default flip.")},
+                          {"crops", std::move(crops)}},
+                         "An inset strip.", {"name", "crops"}),
+                  "Crops of a picture, as the input, the methods and the reference show them.", 0);
 }
 
 /// What a preset may change.
@@ -102,6 +130,8 @@ Json bodySchema() {
     all["pairs"] = listOf(closed({{"entry", text("An entry.")}, {"against", text("The entry it is held against.")}}, "A pair.",
                                  {"entry", "against"}),
                           "Equal time, equal error and equivalent samples between entries.", 0);
+    all["ablations"] = ablationsSchema();
+    all["figures"] = figuresSchema();
     all["intervals"] = closed({{"level", {{"type", "number"}, {"minimum", 0.5}, {"maximum", 0.9999}, {"default", 0.95}}},
                                {"units", oneOfNames({"seeds", "frames-and-seeds"}, "What counts as an independent measurement.")},
                                {"method", oneOfNames({"student-t", "bootstrap"}, "How intervals are found.")}},

@@ -3,50 +3,29 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <set>
 
-#include "measure/measure.h"
 #include "study/run_job.h"
-#include "study/temporal_metrics.h"
 
 namespace lumi {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-double meanOf(const std::vector<double>& values) {
-    double sum = 0;
-    for (const double value : values) sum += value;
-    return values.empty() ? kNaN : sum / static_cast<double>(values.size());
-}
-
-std::vector<std::string> metricsOf(const Study& study) {
-    std::vector<std::string> metrics = study.metrics;
-    metrics.insert(metrics.end(), study.temporalMetrics.begin(), study.temporalMetrics.end());
-    return metrics;
-}
-
-/// The uncorrected mean over everything that goes into a summary.
-double plainMean(const StudyRowIndex& rows, size_t scene, size_t method, int spp, const std::string& metric, int64_t frame) {
-    std::vector<double> values;
-    for (const StudyRow* row : rows.of(method, spp))
-        if ((scene == kAllScenes || row->scene == scene) && (frame < 0 || row->frame == frame) && row->metrics.contains(metric))
-            values.push_back(row->metrics.at(metric));
-    return meanOf(values);
+Interval intervalOf(const Study& study, const std::vector<double>& values) {
+    return meanInterval(values, study.intervals.level, intervalMethod(study));
 }
 
 void addMeans(const Study& study, const StudyPlan& plan, const StudyRowIndex& rows, StudySummaries& all) {
     for (const size_t scene : rows.scenes())
         for (const int spp : rows.spp())
             for (size_t method = 0; method < plan.methods.size(); ++method)
-                for (const std::string& metric : metricsOf(study)) {
+                for (const std::string& metric : allMetrics(study)) {
                     const auto add = [&](int64_t frame, std::vector<StudySummary>& list) {
                         const std::vector<double> values = unitValues(study, rows, scene, method, spp, metric, frame);
                         if (values.empty()) return;
-                        list.push_back({scene, method, spp, metric, frame,
-                                        meanInterval(values, study.intervals.level, intervalMethod(study)),
-                                        plainMean(rows, scene, method, spp, metric, frame)});
+                        list.push_back({scene, method, spp, metric, frame, intervalOf(study, values),
+                                        finiteMean(unitValues(study, rows, scene, method, spp, metric, frame, ValueKind::Measured)),
+                                        countMissing(values)});
                     };
                     add(-1, all.metrics);
                     if (scene == kAllScenes || study.frames.measure.size() < 2) continue;
@@ -54,15 +33,16 @@ void addMeans(const Study& study, const StudyPlan& plan, const StudyRowIndex& ro
                 }
 }
 
+/// Of the entries; what stages are worth is another question.
 void addRankings(const Study& study, const StudyPlan& plan, const StudyRowIndex& rows, StudySummaries& all) {
     for (const size_t scene : rows.scenes())
         for (const int spp : rows.spp())
-            for (const std::string& metric : metricsOf(study)) {
+            for (const std::string& metric : allMetrics(study)) {
                 std::vector<size_t> methods;
                 std::vector<std::vector<double>> values;
                 for (size_t method = 0; method < plan.methods.size(); ++method) {
                     std::vector<double> own = unitValues(study, rows, scene, method, spp, metric);
-                    if (own.empty() || (!values.empty() && own.size() != values.front().size())) continue;
+                    if (plan.methods[method].whole || countMissing(own) == static_cast<int64_t>(own.size())) continue;
                     methods.push_back(method);
                     values.push_back(std::move(own));
                 }
@@ -72,7 +52,7 @@ void addRankings(const Study& study, const StudyPlan& plan, const StudyRowIndex&
                 std::vector<size_t> order(methods.size());
                 for (size_t i = 0; i < order.size(); ++i) order[i] = i;
                 std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-                    const double x = meanOf(values[a]), y = meanOf(values[b]);
+                    const double x = finiteMean(values[a]), y = finiteMean(values[b]);
                     return higher ? x > y : x < y;
                 });
                 StudyRanking ranking{scene, spp, metric, {}};
@@ -85,46 +65,21 @@ void addRankings(const Study& study, const StudyPlan& plan, const StudyRowIndex&
             }
 }
 
-/// A seed's value of a metric at each number of samples that a method ran with.
-struct Curve {
-    std::vector<double> spp, value;
-};
-
-std::vector<Curve> seedCurves(const Study& study, const StudyRowIndex& rows, size_t scene, size_t method,
-                              const std::string& metric) {
-    std::vector<Curve> curves;
-    for (const int seed : study.seeds) {
-        Curve curve;
-        for (const int spp : rows.spp()) {
-            std::vector<double> values;
-            for (const StudyRow* row : rows.of(method, spp))
-                if (row->scene == scene && row->seed == seed && !std::isnan(row->value(metric)))
-                    values.push_back(row->value(metric));
-            if (values.empty()) continue;
-            curve.spp.push_back(spp);
-            curve.value.push_back(meanOf(values));
-        }
-        if (!curve.spp.empty()) curves.push_back(std::move(curve));
-    }
-    return curves;
-}
-
 void addSlopes(const Study& study, const StudyPlan& plan, const StudyRowIndex& rows, StudySummaries& all) {
     for (const size_t scene : rows.scenes())
         for (size_t method = 0; method < plan.methods.size(); ++method)
             for (const std::string& metric : study.metrics) {
                 if (scene == kAllScenes || higherIsBetter(metric)) continue;
                 std::vector<double> slopes;
-                for (const Curve& curve : seedCurves(study, rows, scene, method, metric))
-                    if (const double slope = logLogSlope(curve.spp, curve.value); curve.spp.size() > 2 && !std::isnan(slope))
-                        slopes.push_back(slope);
-                if (!slopes.empty())
-                    all.slopes.push_back({scene, method, metric, meanInterval(slopes, study.intervals.level, intervalMethod(study))});
+                for (const SeedCurve& curve : seedCurves(study, rows, scene, method, metric))
+                    slopes.push_back(curve.spp.size() > 2 ? logLogSlope(curve.spp, curve.value) : kNaN);
+                const Interval slope = intervalOf(study, slopes);
+                if (slope.count > 0) all.slopes.push_back({scene, method, metric, slope});
             }
 }
 
 /// Samples at which `curve` has the value; beyond its last, by the square of the error falling as 1/n.
-double samplesFor(const Curve& curve, double value, bool root, bool& extrapolated) {
+double samplesFor(const SeedCurve& curve, double value, bool root, bool& extrapolated) {
     std::vector<double> errors(curve.value.rbegin(), curve.value.rend()), spp(curve.spp.rbegin(), curve.spp.rend());
     if (value < errors.front() && errors.front() > 0 && value > 0) {
         extrapolated = true;
@@ -143,68 +98,70 @@ void addEquivalents(const Study& study, const StudyPlan& plan, const StudyRowInd
                             study.entries[plan.methods[other].entry].name != pair.against || scene == kAllScenes ||
                             !isSquaredError(metric))
                             continue;
-                        const std::vector<Curve> own = seedCurves(study, rows, scene, method, metric);
-                        const std::vector<Curve> against = seedCurves(study, rows, scene, other, metric);
-                        if (own.size() != against.size() || own.empty()) continue;
+                        const std::vector<SeedCurve> own = seedCurves(study, rows, scene, method, metric);
+                        const std::vector<SeedCurve> against = seedCurves(study, rows, scene, other, metric);
+                        if (own.empty() || own[0].spp.empty() || against[0].spp.empty()) continue;
                         for (size_t point = 0; point < own[0].spp.size(); ++point) {
                             StudyEquivalent result{scene, method, other, static_cast<int>(own[0].spp[point]), metric, {}, false};
                             std::vector<double> samples;
                             for (size_t seed = 0; seed < own.size(); ++seed)
                                 samples.push_back(samplesFor(against[seed], own[seed].value[point], metric == "rmse",
                                                              result.extrapolated));
-                            result.samples = meanInterval(samples, study.intervals.level, intervalMethod(study));
-                            if (!std::isnan(result.samples.mean)) all.equivalents.push_back(result);
+                            result.samples = intervalOf(study, samples);
+                            if (result.samples.count > 0) all.equivalents.push_back(result);
                         }
                     }
 }
 
+/// Each stage of an ablation against the whole entry, on the same samples where the stage leaves them alone.
+void addStages(const Study& study, const StudyPlan& plan, const StudyRowIndex& rows, StudySummaries& all) {
+    for (const size_t scene : rows.scenes())
+        for (const int spp : rows.spp())
+            for (size_t method = 0; method < plan.methods.size(); ++method) {
+                if (!plan.methods[method].whole) continue;
+                const size_t whole = *plan.methods[method].whole;
+                for (const std::string& metric : allMetrics(study)) {
+                    const std::vector<double> with = unitValues(study, rows, scene, whole, spp, metric);
+                    const std::vector<double> without = unitValues(study, rows, scene, method, spp, metric);
+                    if (with.empty() || without.empty()) continue;
+                    all.stages.push_back({scene, whole, method, spp, metric, intervalOf(study, with), intervalOf(study, without),
+                                          pairedInterval(without, with, study.intervals.level, intervalMethod(study))});
+                }
+            }
+}
+
+void addNonFinite(const StudyPlan& plan, const StudyRowIndex& rows, StudySummaries& all) {
+    for (const size_t scene : rows.scenes())
+        for (const int spp : rows.spp())
+            for (size_t method = 0; method < plan.methods.size() && scene != kAllScenes; ++method) {
+                StudyNonFinite found{scene, method, spp, 0, 0, 0};
+                for (const StudyRow* row : rows.of(method, spp)) {
+                    if (row->scene != scene || row->frame < 0) continue;
+                    found.pixels += row->nonFinitePixels;
+                    found.images += row->nonFinitePixels > 0;
+                    ++found.allImages;
+                }
+                if (found.pixels > 0) all.nonFinite.push_back(found);
+            }
+}
+
 }  // namespace
 
-bool higherIsBetter(const std::string& metric) {
-    return !findTemporalMetric(metric) && findMetric(metric).higherIsBetter;
-}
-
-IntervalMethod intervalMethod(const Study& study) {
-    return study.intervals.method == StudyIntervals::Method::Bootstrap ? IntervalMethod::Bootstrap : IntervalMethod::StudentT;
-}
-
-StudyRowIndex::StudyRowIndex(const StudyRecords& records) {
-    std::set<int> spp;
-    std::set<size_t> scenes;
-    for (const StudyRow& row : records.rows) {
-        rows_[{row.method, row.spp}].push_back(&row);
-        spp.insert(row.spp);
-        scenes.insert(row.scene);
-    }
-    spp_.assign(spp.begin(), spp.end());
-    scenes_.assign(scenes.begin(), scenes.end());
-    if (scenes_.size() > 1) scenes_.push_back(kAllScenes);
-}
-
-const std::vector<const StudyRow*>& StudyRowIndex::of(size_t method, int spp) const {
-    static const std::vector<const StudyRow*> none;
-    const auto found = rows_.find({method, spp});
-    return found == rows_.end() ? none : found->second;
-}
-
-std::vector<double> unitValues(const Study& study, const StudyRowIndex& rows, size_t scene, size_t method, int spp,
-                               const std::string& metric, int64_t frame) {
-    // Consecutive frames are no independent units for a metric of their differences.
-    const bool byFrame = study.intervals.units == StudyIntervals::Units::FramesAndSeeds && !findTemporalMetric(metric);
-    std::map<std::pair<int, int64_t>, std::map<size_t, std::vector<double>>> units;
-    for (const StudyRow* row : rows.of(method, spp)) {
-        if ((scene != kAllScenes && row->scene != scene) || (frame >= 0 && row->frame != frame)) continue;
-        const double value = row->value(metric);
-        if (!std::isnan(value)) units[{row->seed, byFrame ? row->frame : 0}][row->scene].push_back(value);
-    }
-    std::vector<double> values;
-    for (const auto& [unit, scenes] : units) {
-        // Each scene counts alike, however many frames it has.
-        std::vector<double> means;
-        for (const auto& [index, own] : scenes) means.push_back(meanOf(own));
-        values.push_back(meanOf(means));
-    }
-    return values;
+std::vector<SeedCurve> seedCurves(const Study& study, const StudyRowIndex& rows, size_t scene, size_t method,
+                                  const std::string& metric) {
+    std::vector<SeedCurve> curves(study.seeds.size());
+    for (size_t i = 0; i < curves.size(); ++i)
+        for (const int spp : rows.spp()) {
+            double sum = 0;
+            int count = 0;
+            for (const StudyRow* row : rows.of(method, spp))
+                if (row->scene == scene && row->seed == study.seeds[i] && row->metrics.contains(metric))
+                    sum += row->value(metric), ++count;
+            if (count == 0) continue;
+            curves[i].spp.push_back(spp);
+            curves[i].value.push_back(std::isfinite(sum) ? sum / count : kNaN);
+        }
+    return curves;
 }
 
 StudySummaries summarize(const Study& study, const StudyPlan& plan, const StudyRecords& records) {
@@ -214,6 +171,8 @@ StudySummaries summarize(const Study& study, const StudyPlan& plan, const StudyR
     addRankings(study, plan, rows, all);
     addSlopes(study, plan, rows, all);
     addEquivalents(study, plan, rows, all);
+    addStages(study, plan, rows, all);
+    addNonFinite(plan, rows, all);
     all.biases = separateBiases(study, plan, records);
     return all;
 }

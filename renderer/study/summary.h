@@ -1,16 +1,12 @@
 #pragma once
-#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "study/intervals.h"
 #include "study/records.h"
+#include "study/units.h"
 
 namespace lumi {
-
-/// Index of "all scenes together" in summaries.
-inline constexpr size_t kAllScenes = static_cast<size_t>(-1);
 
 /// Mean of one metric over seeds, for a method on a scene; over the measured frames, or at one.
 struct StudySummary {
@@ -20,6 +16,7 @@ struct StudySummary {
     int64_t frame = -1;  ///< -1: over all that are measured
     Interval interval;   ///< of the corrected values, where there are some
     double uncorrected = 0;
+    int64_t missing = 0;  ///< units (seeds, or frames and seeds) without a value, which do not count
 };
 
 /// The places of the methods that ran with one number of samples.
@@ -30,7 +27,7 @@ struct StudyRanking {
     struct Place {
         size_t method = 0;
         Rank rank;
-        Interval toBest;  ///< paired difference to the method with the best mean; not known for that one itself
+        Interval toBest;  ///< paired difference to the method with the best mean, over the units where both have a value; not known for that one itself
     };
     std::vector<Place> places;  ///< best mean first
 };
@@ -41,8 +38,26 @@ struct StudyBias {
     int spp = 1;
     int seeds = 0;
     BiasVariance parts;
+    double biasShare = 0;       ///< of the mean squared error; NaN if that is not above 0
     Interval meanSquaredError;  ///< over seeds
-    Interval squaredBias;       ///< jackknife over seeds
+    Interval squaredBias, variance, share;  ///< jackknife over seeds: from three on
+    int64_t pixels = 0;         ///< that count: finite in every image and the reference, over all frames
+    int64_t pixelsLeftOut = 0;  ///< the others
+};
+
+/// Pixels that are NaN or infinite in the images of a method, or in their reference. They count in no metric.
+struct StudyNonFinite {
+    size_t scene = 0, method = 0;
+    int spp = 1;
+    int64_t pixels = 0, images = 0, allImages = 0;  ///< images: those with any
+};
+
+/// What it costs to switch a stage off: differences without the stage minus with it, in units that have both.
+struct StudyStageEffect {
+    size_t scene = 0, whole = 0, without = 0;  ///< methods
+    int spp = 1;
+    std::string metric;
+    Interval wholeMean, withoutMean, difference;
 };
 
 /// How an error falls with the number of samples.
@@ -57,7 +72,7 @@ struct StudyEquivalent {
     size_t scene = 0, method = 0, against = 0;
     int spp = 1;
     std::string metric;
-    Interval samples;           ///< over seeds
+    Interval samples;           ///< over the seeds where the other reaches it
     bool extrapolated = false;  ///< beyond the other's samples: by its error falling as 1/n in the mean square
 };
 
@@ -68,6 +83,8 @@ struct StudySummaries {
     std::vector<StudyBias> biases;
     std::vector<StudySlope> slopes;
     std::vector<StudyEquivalent> equivalents;
+    std::vector<StudyStageEffect> stages;
+    std::vector<StudyNonFinite> nonFinite;
 };
 
 StudySummaries summarize(const Study& study, const StudyPlan& plan, const StudyRecords& records);
@@ -75,25 +92,12 @@ StudySummaries summarize(const Study& study, const StudyPlan& plan, const StudyR
 /// The part of summarize() that reads images.
 std::vector<StudyBias> separateBiases(const Study& study, const StudyPlan& plan, const StudyRecords& records);
 
-bool higherIsBetter(const std::string& metric);
-IntervalMethod intervalMethod(const Study& study);
-
-/// Rows by method and number of samples.
-class StudyRowIndex {
-public:
-    explicit StudyRowIndex(const StudyRecords& records);
-    const std::vector<const StudyRow*>& of(size_t method, int spp) const;
-    const std::vector<int>& spp() const { return spp_; }            ///< ascending
-    const std::vector<size_t>& scenes() const { return scenes_; }   ///< kAllScenes last, where there are several
-
-private:
-    std::map<std::pair<size_t, int>, std::vector<const StudyRow*>> rows_;
-    std::vector<int> spp_;
-    std::vector<size_t> scenes_;
+/// A seed's value of a metric at each number of samples that a method ran with; NaN where it has none.
+struct SeedCurve {
+    std::vector<double> spp, value;
 };
-
-/// Values of a metric by unit (seed, or frame and seed), in an order that is the same for all methods. `frame` -1: all.
-std::vector<double> unitValues(const Study& study, const StudyRowIndex& rows, size_t scene, size_t method, int spp,
-                               const std::string& metric, int64_t frame = -1);
+/// One for each of the study's seeds.
+std::vector<SeedCurve> seedCurves(const Study& study, const StudyRowIndex& rows, size_t scene, size_t method,
+                                  const std::string& metric);
 
 }  // namespace lumi

@@ -27,7 +27,7 @@ const std::vector<TemporalMetric>& temporalMetricCatalog() {
     static const std::vector<TemporalMetric> catalog = [] {
         std::vector<TemporalMetric> list;
         for (const SequenceMetric& metric : sequenceMetricCatalog())
-            if (const auto measure = measureOf(metric.id)) list.push_back({metric.id, metric.title, metric.definition, measure});
+            list.push_back({metric.id, metric.title, metric.definition, measureOf(metric.id)});
         return list;
     }();
     return catalog;

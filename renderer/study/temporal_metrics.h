@@ -15,7 +15,8 @@ struct TemporalInput {
     float exposureEv = 0;
 };
 
-/// A metric of consecutive frames, which has a value from the second frame on.
+/// A metric of a sequence. Those of consecutive frames have a value from the second frame on; lag, which has no
+/// `measure`, is one number of all frames after a step in the light (LagMeter).
 struct TemporalMetric {
     const char* id;
     const char* title;

@@ -11,13 +11,15 @@ from lumiscope import PROGRAM, CommandTest, main
 
 STUDY = {
     "version": 1, "title": "Tiny <study>", "scenes": ["cornell"], "size": [64, 36],
-    "frames": {"range": [0, 3], "measure": [1, 2]}, "spp": [1, 2], "seeds": [1, 2],
+    "frames": {"range": [0, 4], "measure": [1, 2]}, "spp": [1, 2], "seeds": [1, 2],
     "reference": {"spp": 64}, "metrics": ["mse", "ssim", "temporal_reprojected"],
     "entries": [{"name": "raw", "module": "none"},
                 {"name": "mean", "module": "accumulate"},
                 {"name": "limited", "module": "accumulate", "set": {"limit": True}, "tune": {"max-samples": [1, 4]}}],
-    "tuning": {"frame": 0, "metric": "mse"},
+    "tuning": {"frame": 3, "metric": "mse"},
     "pairs": [{"entry": "mean", "against": "raw"}],
+    "ablations": [{"entry": "mean", "stages": [{"name": "history", "set": {"limit": True, "max-samples": 1}}]}],
+    "figures": [{"name": "strip", "crops": [{"name": "box", "box": [0.25, 0.5, 0.25, 0.25]}]}],
     "presets": {"quick": {}},
 }
 
@@ -37,7 +39,8 @@ class StudyTest(CommandTest):
         """Every file that has to come out the same: all but times, and what shows them."""
         root = self.folder / folder
         return {str(path.relative_to(root)): path.read_bytes() for path in sorted(root.rglob("*"))
-                if path.is_file() and path.name not in ("timings.json", "times.json", "report.html")}
+                if path.is_file() and path.name not in ("timings.json", "times.json", "report.html")
+                and path.parent.name != "tables"}
 
 
 class Results(StudyTest):
@@ -45,15 +48,15 @@ class Results(StudyTest):
         result = self.study(self.write(), "--preset", "quick", "--out", "out", "--json")
         out = self.folder / "out"
         self.assertEqual({p.name for p in out.iterdir() if p.is_file()} - {".lock"},
-                         {"results.json", "results.csv", "timings.json", "report.html"})
+                         {"study.json", "results.json", "results.csv", "timings.json", "report.html"})
         results = json.loads((out / "results.json").read_text())
         self.assertEqual(result.json, results)
-        # Three entries, two sample counts, two seeds; two frames, and what is measured over the sequence.
-        self.assertEqual(len(results["rows"]), 36)
+        # Three entries and one without a stage, two sample counts, two seeds; two frames, and what is measured over the sequence.
+        self.assertEqual(len(results["rows"]), 48)
         keys = [(r["scene"], r["frame"], r["entry"], r["spp"], r["seed"]) for r in results["rows"]]
-        self.assertEqual(len(set(keys)), 36)
+        self.assertEqual(len(set(keys)), 48)
         sequences = [row for row in results["rows"] if row["frame"] == "sequence"]
-        self.assertEqual(len(sequences), 12)
+        self.assertEqual(len(sequences), 16)
         flicker = {(r["entry"], r["spp"], r["seed"]): r["metrics"]["temporal_reprojected"] for r in sequences}
         self.assertGreater(flicker["raw", 1, 1], 1.5 * flicker["mean", 1, 1], "a mean of frames flickers less")
         for row in results["rows"]:
@@ -65,7 +68,7 @@ class Results(StudyTest):
             self.assertEqual(row["nonfinite_pixels"], 0)
         with open(out / "results.csv") as file:
             table = list(csv.DictReader(file))
-        self.assertEqual(len(table), 36)
+        self.assertEqual(len(table), 48)
         for line, row in zip(table, results["rows"]):
             metric = "temporal_reprojected" if row["frame"] == "sequence" else "mse"
             self.assertEqual(float(line[metric]), row["metrics"][metric])
@@ -76,13 +79,61 @@ class Results(StudyTest):
         self.assertLess(mean["raw", 2]["mean"], 0.7 * mean["raw", 1]["mean"])
         self.assertEqual(mean["raw", 1]["count"], 2)
         self.assertLess(mean["raw", 1]["low"], mean["raw", 1]["mean"])
-        # Tuning finds that more samples are better.
-        self.assertEqual({t["chosen"]["max-samples"] for t in results["tuning"]} - {"1", "4"}, set())
-        self.assertEqual(len(results["tuning"][0]["candidates"]), 2)
+        # Tuning finds that the mean of four frames is better than the last of them, at both sample counts.
+        self.assertEqual([t["chosen"]["max-samples"] for t in results["tuning"]], ["4", "4"])
+        for tuning in results["tuning"]:
+            one, four = tuning["candidates"]
+            self.assertEqual((one["values"]["max-samples"], four["values"]["max-samples"]), ("1", "4"))
+            self.assertLess(four["metric"], 0.6 * one["metric"])
         times = json.loads((out / "timings.json").read_text())
-        self.assertEqual(len(times["rows"]), 6)
-        self.assertTrue(all(row["trace_ms"] > 0 for row in times["rows"]))
+        self.assertEqual(len(times["rows"]), 8)
+        for row in times["rows"]:
+            for part in (row["frame_ms"], row["trace_ms"], *row["stages_ms"].values()):
+                self.assertGreaterEqual(part["mean"], 0)
+                self.assertLessEqual(part["low"], part["mean"], "every time has its interval")
         self.assertIn("equivalent_spp", results["equivalent_samples"][0])
+        self.assertEqual(results["nonfinite"], [])
+        # Without its history the mean is the raw frame: twice to thrice the error at frames 1 and 2.
+        effect = {(a["scene"], a["spp"], a["metric"]): a for a in results["ablations"]}["cornell", 1, "mse"]
+        self.assertEqual((effect["entry"], effect["stage"], effect["difference"]["count"]), ("mean", "history", 2))
+        self.assertGreater(effect["without"]["mean"], 1.6 * effect["whole"]["mean"])
+        self.assertAlmostEqual(effect["difference"]["mean"], effect["without"]["mean"] - effect["whole"]["mean"], 12)
+        self.assertEqual({a["stage"] for a in times["ablations"]}, {"history"})
+
+    def test_figures_and_tables_for_the_paper(self):
+        name = self.write()
+        self.study(name, "--out", "out")
+        out = self.folder / "out"
+        self.assertEqual(sorted(p.name for p in (out / "figures").iterdir()), ["strip.png", "strip.svg"])
+        tables = {p.name: p.read_text() for p in (out / "tables").iterdir()}
+        self.assertEqual(set(tables), {"results-cornell.tex", "equal-cornell.tex", "ablation-cornell.tex", "metrics.tex", "all.tex"})
+        self.assertIn("\\toprule", tables["results-cornell.tex"])
+        self.assertIn("Tiny \\textless{}study\\textgreater{}", tables["results-cornell.tex"])
+        # Another choice of crops is drawn from what is there: nothing is rendered again, and what is not wanted any more goes.
+        changed = [{"name": "other", "metric": "mse", "crops": [{"box": [0, 0, 0.5, 0.5]}, {"box": [0.5, 0.5, 0.5, 0.5]}]}]
+        result = self.study(self.write(figures=changed), "--out", "out")
+        self.assertIn("0 jobs run, ", result.err)
+        self.assertEqual(sorted(p.name for p in (out / "figures").iterdir()), ["other.png", "other.svg"])
+
+    def test_lag_is_measured_after_a_step_in_the_light(self):
+        """A mean with weight 1/2 of the new frame has 90% after three frames: 1 - 0.5^(n + 1)."""
+        step = {"frame": 3, "set": {"light.lamp.power": 4}}
+        name = self.write(frames={"range": [0, 9], "measure": [8], "still": True, "step": step}, metrics=["mse", "lag"], spp=[16], seeds=[1, 2],
+                          reference={"spp": 256}, tuning={"frame": 7, "metric": "mse"}, ablations=[], pairs=[],
+                          entries=[{"name": "raw", "module": "none"}, {"name": "half", "module": "temporal", "set": {"color-alpha": 0.5}},
+                                   {"name": "slow", "module": "temporal", "set": {"color-alpha": 0.05}}])
+        results = self.study(name, "--out", "out", "--json").json
+        lag = {s["entry"]: s for s in results["summary"] if s["metric"] == "lag"}
+        self.assertEqual(lag["raw"]["mean"], 0, "a frame without memory follows at once")
+        self.assertEqual(lag["half"]["mean"], 3)
+        self.assertIsNone(lag["slow"]["mean"], "not within the frames there were")
+        self.assertEqual(lag["slow"]["missing"], 2)
+        page = (self.folder / "out" / "report.html").read_text()
+        data = json.loads(page.split('id="data">', 1)[1].split("</script>", 1)[0])
+        curve = {s["entry"]: s for s in data["series"] if s["metric"] == "lag"}["half"]
+        self.assertEqual(curve["begin"], 3)
+        for n, value in enumerate(curve["values"][:4]):
+            self.assertAlmostEqual(value, 1 - 0.5 ** (n + 1), delta=0.03)
 
     def test_the_report_is_one_file_that_needs_no_other(self):
         self.study(self.write(), "--preset", "quick", "--out", "out")
@@ -94,11 +145,12 @@ class Results(StudyTest):
         data = json.loads(page.split('id="data">', 1)[1].split("</script>", 1)[0])
         self.assertEqual(len(data["pictures"]), 2, "the least and the most samples")
         kinds = [image["kind"] for image in data["pictures"][0]["images"]]
-        self.assertEqual(sorted(kinds), ["error"] * 3 + ["method"] * 3 + ["reference"])
+        self.assertEqual(sorted(kinds), ["error"] * 4 + ["method"] * 4 + ["reference"])
+        self.assertEqual([figure["name"] for figure in data["figures"]], ["strip"])
 
     def test_table_on_standard_output(self):
         result = self.study(self.write(), "--out", "out")
-        for part in ("cornell, 1 spp", "raw", "limited", "±"):
+        for part in ("cornell, 1 spp", "raw", "limited", "±", "cornell, 1 spp, without", "history", "equal time, equal value"):
             self.assertIn(part, result.out)
         self.assertIn("Wrote out/report.html", result.err)
 
@@ -150,14 +202,34 @@ class Resume(StudyTest):
         self.assertEqual(self.contents("out"), before)
 
     def test_an_interrupt_ends_it_and_it_goes_on(self):
-        name = self.write()
-        process = subprocess.Popen([PROGRAM, "study", name, "--out", "out"], cwd=self.folder, stderr=subprocess.PIPE,
-                                   stdout=subprocess.PIPE, env={**os.environ, **self.environment()})
-        time.sleep(0.3)
-        process.send_signal(signal.SIGINT)
-        _, error = process.communicate()
-        self.assertIn(process.returncode, (130, 0), error)
-        self.study(name, "--out", "out")
+        """Ctrl+C at three moments: exit code 130 and nothing on standard output; then the same bytes as without."""
+        name = self.write(reference={"spp": 512})
+        begun = time.monotonic()
+        self.study(name, "--out", "whole", cache="a")
+        duration, expected = time.monotonic() - begun, self.contents("whole")
+        for part in (0.15, 0.4, 0.65):
+            process = subprocess.Popen([PROGRAM, "study", name, "--out", "out", "--quiet"], cwd=self.folder, stderr=subprocess.PIPE,
+                                       stdout=subprocess.PIPE, env={**os.environ, **self.environment("b")})
+            time.sleep(part * duration)
+            process.send_signal(signal.SIGINT)
+            output, error = process.communicate(timeout=60)
+            if process.returncode == 0 and part > 0.3:
+                continue  # it goes on where it was, so that later ones may come too late
+            self.assertEqual((process.returncode, output), (130, b""), error)
+            self.assertFalse((self.folder / "out" / "results.json").exists())
+        self.study(name, "--out", "out", cache="b")
+        self.assertEqual(self.contents("out"), expected)
+
+    def test_a_folder_belongs_to_one_study(self):
+        self.study(self.write(), "--out", "out")
+        before = self.contents("out")
+        other = self.write("other.json")
+        self.refused(2, ["out: holds the study \"tiny\"", "another folder for \"other\""], "study", other, "--out", "out", **self.environment())
+        (self.folder / "mine").mkdir()
+        (self.folder / "mine" / "results.json").write_text("mine")
+        self.refused(2, ["mine: holds \"results.json\"", "an empty folder"], "study", other, "--out", "mine", **self.environment())
+        self.assertEqual(self.contents("out"), before)
+        self.assertEqual((self.folder / "mine" / "results.json").read_text(), "mine")
 
     def test_one_process_works_in_a_folder(self):
         name = self.write(reference={"spp": 4096}, size=[320, 180])
@@ -183,6 +255,11 @@ class Errors(StudyTest):
         self.refused(3, ["lost.json:1:", "unknown scene"], "study", self.write("lost.json", scenes=["no-such-scene"]))
         self.refused(3, ["bad.json:1:", "path.max-dept", "path.max-depth"], "study",
                      self.write("bad.json", set={"path.max-dept": 3}), "--out", "o", **self.environment())
+        # Every scene is looked at before the first is rendered.
+        self.refused(3, ["bad.json:1:", "camera.select"], "study",
+                     self.write("bad.json", scenes=["cornell", {"scene": "room", "set": {"camera.select": "nobody"}}], reference={"spp": 1 << 20}),
+                     "--out", "q", **self.environment())
+        self.assertFalse((self.folder / "q" / "jobs").exists())
         self.refused(3, ["bad.json:1:", "camera.select"], "study",
                      self.write("bad.json", scenes=[{"scene": "cornell", "set": {"camera.select": "nobody"}}]), "--out", "p",
                      **self.environment())

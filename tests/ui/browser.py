@@ -36,6 +36,10 @@ class Browser:
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         self.call("Page.enable")
         self.call("Runtime.enable")
+        self.resize(width, height)
+
+    def resize(self, width, height):
+        """Of the page, in pixels."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
 
     def close(self):
@@ -94,11 +98,17 @@ class Browser:
         """x and y on the screen."""
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=pressed, clickCount=1, **more)
 
-    def drag(self, x0, y0, x1, y1):
-        self.mouse("mousePressed", x0, y0, 1)
+    def drag(self, x0, y0, x1, y1, **more):
+        self.mouse("mousePressed", x0, y0, 1, **more)
         for part in (0.5, 1):
-            self.mouse("mouseMoved", x0 + part * (x1 - x0), y0 + part * (y1 - y0), 1)
-        self.mouse("mouseReleased", x1, y1)
+            self.mouse("mouseMoved", x0 + part * (x1 - x0), y0 + part * (y1 - y0), 1, **more)
+        self.mouse("mouseReleased", x1, y1, **more)
+        self.settle()
+
+    def key(self, key):
+        """Presses and releases a key that has one letter."""
+        for kind in ("keyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, text=key if kind == "keyDown" else "")
         self.settle()
 
     def settle(self):

@@ -21,6 +21,9 @@ STUDY = {
                 {"name": "limited", "module": "accumulate", "set": {"limit": True}}],
     "sweep": {"axes": {"max-samples": [1, 2], "path.roulette-depth": [2, 4]}, "entries": ["limited"]},
     "pairs": [{"entry": "mean", "against": "raw"}],
+    "ablations": [{"entry": "mean", "stages": [{"name": "all but one", "set": {"limit": True, "max-samples": 1}}]}],
+    "figures": [{"name": "strip", "entries": ["raw", "mean"], "crops": [{"name": "box", "box": [0.3, 0.4, 0.25, 0.3]},
+                                                                          {"box": [0.6, 0.1, 0.2, 0.2]}]}],
 }
 
 
@@ -36,14 +39,21 @@ def make_report():
 
 def test_everything_is_there(browser):
     count = lambda selector: browser.value(f"document.querySelectorAll({json.dumps(selector)}).length")
-    for section in ("tables", "convergence", "sweep", "frames", "pictures", "bias", "times", "method"):
+    for section in ("tables", "convergence", "sweep", "frames", "figures", "pictures", "bias", "ablations", "times", "latex", "method"):
         assert count(f"h2#{section}") == 1, f"no section {section}"
     assert count("#tables ~ .card table, section table") >= 4
     # Two metrics of images: two convergence plots with three points of each entry. A heat map for each metric and sample count.
     assert browser.value("document.querySelectorAll('section')[1].querySelectorAll('svg').length") == 2
     assert browser.value("[...document.querySelectorAll('section')[1].querySelectorAll('svg')].every(s => s.querySelectorAll('circle').length >= 18)")
     assert browser.value("document.querySelectorAll('section')[2].querySelectorAll('svg rect').length") == 3 * 3 * 4
-    assert count(".viewer") == 2 and count(".viewer .tile") == 2 * 7
+    # Two entries, four points of the sweep, one without a stage, and the reference.
+    assert count(".viewer") == 2 and count(".viewer .tile") == 2 * 8
+    # An inset strip: two methods and the reference, two crops, maps, the bar.
+    assert count(".strip svg image") == 1 + 2 * 2 * 2 + 2 + 1 and count(".strip svg text") > 12
+    assert browser.value("[...document.querySelectorAll('.strip svg text')].some(t => t.textContent === 'Reference')")
+    # Without its stage the mean of one frame is no mean: surely worse at the last frame, in bold.
+    assert count("#ablations ~ .card td .sure") >= 1
+    assert count("details.latex") == 4 and browser.value("document.querySelector('details.latex pre').textContent.includes('\\\\toprule')")
     assert browser.value("[...document.images].every(i => i.complete && i.naturalWidth === 240)"), "an image does not show"
     assert browser.value("performance.getEntriesByType('resource').filter(e => !e.name.startsWith('data:')).length") == 0, "it loads something"
     assert browser.value("!document.querySelector('main').innerText.match(/NaN|undefined|\\[object/)"), "a value is missing"
@@ -90,30 +100,113 @@ class Shifted:
         return self.picture.pixel(max(x - 5, 0), y)
 
 
-def test_flip_maps_and_zoom(browser):
+def test_flip_and_maps(browser):
     box, (x, y) = stage_of(browser)
     _, _, width, height = box
-    inner = (int(width * 0.1), int(height * 0.2), int(width * 0.9), int(height * 0.9))
+    part = lambda a, b: (int(width * a), int(height * 0.2), int(width * b), int(height * 0.9))
     shot = lambda name: Picture(browser.shot(FOLDER / f"{name}.png", box))
+    wipe = shot("wipe-again")  # its line stands at a fifth
     browser.click('[data-mode="flip"]')
     first = shot("flip-left")
     browser.click('[data-mode="flip"]')
     second = shot("flip-right")
-    assert difference(first, second, inner) > 5, "a flip shows the other picture"
+    assert difference(first, second, part(0.1, 0.9)) > 5, "a flip shows the other picture"
+    assert difference(first, wipe, part(0.02, 0.17)) == 0, "first the one that stands left of the wipe's line"
+    assert difference(second, wipe, part(0.23, 0.97)) == 0, "then the one that stands right of it"
+    browser.value("document.querySelector('.stage').focus()")
+    browser.key(" ")
+    assert difference(first, shot("flip-key"), part(0.02, 0.98)) == 0, "Space flips back"
+    browser.key(" ")
     browser.click(".errors")
-    assert difference(second, shot("error-map"), inner) == 0, "the reference has no error map"
+    assert difference(second, shot("error-map"), part(0.1, 0.9)) == 0, "the reference has no error map"
     browser.click('[data-mode="wipe"]')
     browser.drag(x + width * 0.2, y + height / 3, x + width * 0.7, y + height / 3)
-    left = (int(width * 0.25), int(height * 0.3), int(width * 0.65), int(height * 0.9))
-    assert difference(first, shot("error-wipe"), left) > 5, "the left picture's error map shows"
+    assert difference(first, shot("error-wipe"), part(0.25, 0.65)) > 5, "the left picture's error map shows"
     browser.click(".errors")
+
+
+class Zoomed:
+    """What a picture shows once it is enlarged about a point."""
+
+    def __init__(self, picture, factor, x, y):
+        self.picture, self.factor, self.x, self.y = picture, factor, x, y
+
+    def pixel(self, x, y):
+        return self.picture.pixel(round(self.x + (x - self.x) / self.factor), round(self.y + (y - self.y) / self.factor))
+
+
+def test_zoom_is_of_all_pictures(browser):
+    """Both viewers show their references; the wheel over the first enlarges both, about the same place."""
+    browser.value("document.querySelectorAll('.viewer').forEach(v => { for (const s of ['.left-select', '.right-select'])"
+                  "{ const e = v.querySelector(s); e.value = 'Reference'; e.dispatchEvent(new Event('change')); } })")
+    browser.value("document.querySelectorAll('.stage').forEach((s, i) => { s.id = `stage${i}`; })")
+    box, (x, y) = stage_of(browser)
+    _, _, width, height = box
+    both = lambda name: [Picture(browser.shot(FOLDER / f"{name}-{i}.png", browser.box(f"#stage{i}"))) for i in range(2)]
+    before = both("zoom-before")
     browser.value("document.querySelector('.stage').focus()")
-    before = browser.value("document.querySelector('.viewer .tile img').style.transform")
-    browser.mouse("mouseWheel", x + width * 0.6, y + height * 0.4, deltaX=0, deltaY=-480)
-    transforms = browser.value("[...new Set([...document.querySelectorAll('.viewer img')].map(i => i.style.transform))]")
-    assert len(transforms) == 1 and transforms[0] != before, f"all views zoom together: {transforms}"
-    browser.shot(FOLDER / "zoomed.png", box)
+    browser.mouse("mouseWheel", x + width * 0.6, y + height * 0.4, deltaX=0, deltaY=-480)  # twice two octaves of 240
+    after = both("zoom-after")
+    inner = (int(width * 0.1), int(height * 0.2), int(width * 0.6), int(height * 0.9))
+    for was, now in zip(before, after):
+        expected = Zoomed(was, 4, width * 0.6, height * 0.4)
+        right, wrong = difference(now, expected, inner), difference(now, was, inner)
+        assert right < 0.2 * wrong, f"enlarged four times about the pointer: {right:.1f}, as it was: {wrong:.1f}"
+    browser.drag(x + width * 0.5, y + height * 0.5, x + width * 0.4, y + height * 0.5)
+    moved = both("zoom-moved")
+    shift = int(width * 0.1)
+    for was, now in zip(after, moved):
+        panned = sum(sum(abs(p - q) for p, q in zip(now.pixel(u, v), was.pixel(u + shift, v))) for u in range(100, 600, 7) for v in range(150, 400, 7))
+        still = sum(sum(abs(p - q) for p, q in zip(now.pixel(u, v), was.pixel(u, v))) for u in range(100, 600, 7) for v in range(150, 400, 7))
+        assert panned < 0.2 * still, f"dragging pans both: {panned} against {still}"
     browser.click(".reset")
+    assert difference(both("zoom-reset")[1], before[1], inner) == 0, "Fit shows all again"
+
+
+def test_a_crop_is_marked_for_the_study_file(browser):
+    _, (x, y) = stage_of(browser)
+    _, _, width, height = browser.box(".stage")
+    browser.drag(x + width * 0.25, y + height * 0.5, x + width * 0.5, y + height * 0.75, modifiers=8)  # Shift
+    crop = json.loads(browser.value("document.querySelector('.crop .box').textContent"))
+    assert crop["scene"] == "cornell" and crop["frame"] == 2
+    assert all(abs(a - b) < 0.01 for a, b in zip(crop["crops"][0]["box"], (0.25, 0.5, 0.25, 0.25))), crop
+    assert browser.value("getComputedStyle(document.querySelector('.mark')).display") == "block"
+
+
+def test_the_page_fits_a_narrow_window(browser):
+    for theme in ("light", "dark"):
+        if browser.value("document.documentElement.dataset.theme") != theme:
+            browser.click(".theme")
+        browser.resize(400, 850)
+        assert browser.value("document.documentElement.scrollWidth <= innerWidth"), "the page is wider than a telephone"
+        browser.shot(FOLDER / f"narrow-{theme}.png")
+        browser.resize(1200, 900)
+
+
+def test_figures_as_files(browser):
+    """A strip as SVG, as a browser draws it, is the strip as PNG."""
+    import xml.etree.ElementTree as xml
+    folder = FOLDER / "out" / "figures"
+    tree = xml.parse(folder / "strip.svg").getroot()
+    assert tree.tag == "{http://www.w3.org/2000/svg}svg"
+    for image in tree.iter("{http://www.w3.org/2000/svg}image"):
+        assert image.get("href").startswith("data:image/png;base64,"), "it needs a file"
+    width, height = float(tree.get("width")), float(tree.get("height"))
+    png = Picture(folder / "strip.png")
+    assert (png.width, png.height) == (round(2 * width), round(2 * height))
+    browser.resize(int(width) + 20, int(height) + 20)
+    browser.open(folder / "strip.svg")
+    drawn = Picture(browser.shot(FOLDER / "strip-drawn.png", (0, 0, int(width), int(height))))
+    browser.resize(1200, 900)
+    total = count = worst = 0
+    for v in range(2, int(height) - 2, 4):
+        for u in range(2, int(width) - 2, 4):
+            mine = [sum(png.pixel(2 * u + i, 2 * v + j)[c] for i in (0, 1) for j in (0, 1)) / 4 for c in range(3)]
+            apart = sum(abs(a - b) for a, b in zip(mine, drawn.pixel(u, v))) / 3
+            total, count, worst = total + apart, count + 1, max(worst, apart)
+    assert total / count < 6, f"SVG and PNG differ by {total / count:.2f} of 255 on average"
+    colours = {drawn.pixel(u, v) for v in range(0, int(height), 2) for u in range(0, int(width), 2)}
+    assert len(colours) > 1000 and (230, 159, 0) in colours and (0, 158, 115) in colours, "pictures, and both crops' frames"
 
 
 def test_screenshots(browser):
@@ -143,7 +236,9 @@ def main():
     browser = Browser()
     try:
         browser.open(report, ready="document.documentElement.dataset.ready === 'yes' && [...document.images].every(i => i.complete)")
-        for test in (test_everything_is_there, test_the_wipe, test_flip_maps_and_zoom, test_screenshots):
+        for test in (test_everything_is_there, test_the_wipe, test_flip_and_maps, test_zoom_is_of_all_pictures,
+                     test_a_crop_is_marked_for_the_study_file,
+                     test_the_page_fits_a_narrow_window, test_screenshots, test_figures_as_files):
             test(browser)
             print(f"{test.__name__}: good")
     finally:

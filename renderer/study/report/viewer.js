@@ -29,7 +29,8 @@ class Viewer {
         <button class="errors">Error maps</button><button class="reset">Fit</button>
         <span class="scale" hidden><span class="low"></span><i></i><span class="high"></span></span></div>
       <div class="stage" tabindex="0"><div class="pane a"><img alt=""></div><div class="pane b"><img alt=""></div>
-        <div class="divider" role="slider" aria-label="Wipe" tabindex="0"></div><span class="tag left"></span><span class="tag right"></span></div>
+        <div class="divider" role="slider" aria-label="Wipe" tabindex="0"></div><span class="tag left"></span><span class="tag right"></span><div class="mark" hidden></div></div>
+      <p class="crop" hidden>Crop for <code>"figures"</code> in the study file: <code class="box" tabindex="0"></code></p>
       <div class="tiles"></div>`;
     this.root = root, this.stage = root.querySelector(".stage"), this.divider = root.querySelector(".divider");
     this.stage.style.aspectRatio = `${set.width} / ${set.height}`;
@@ -84,13 +85,14 @@ class Viewer {
     }, { passive: false });
     let drag = null;
     stage.addEventListener("pointerdown", event => {
-      drag = { wipe: event.target === this.divider, ...place(event), from: { ...view } };
+      drag = { wipe: event.target === this.divider, mark: event.shiftKey && this.mode !== "pair", ...place(event), from: { ...view } };
       stage.setPointerCapture(event.pointerId);
     });
     const follow = event => {
       if (!drag) return;
       const at = place(event);
-      if (drag.wipe) { this.wipe = Math.min(Math.max(at.x, 0), 1); this.place(); }
+      if (drag.mark) this.markCrop(drag, at);
+      else if (drag.wipe) { this.wipe = Math.min(Math.max(at.x, 0), 1); this.place(); }
       else setView(view.scale, drag.from.x + at.x - drag.x, drag.from.y + at.y - drag.y);
     };
     stage.addEventListener("dragstart", event => event.preventDefault());
@@ -99,6 +101,25 @@ class Viewer {
     stage.addEventListener("pointercancel", () => { drag = null; });
     stage.addEventListener("dblclick", event => { const at = place(event); view.scale > 1 ? setView(1, 0, 0) : zoomAt(4, at.x, at.y); });
     stage.addEventListener("keydown", event => this.key(event));
+  }
+
+  /** A box on the picture, as a figure of the study file names it: shares of the whole picture. */
+  markCrop(from, to) {
+    const inside = v => Math.min(Math.max(v, 0), 1), shares = p => [inside((p.x - view.x) / view.scale), inside((p.y - view.y) / view.scale)];
+    const [x0, y0] = shares(from), [x1, y1] = shares(to);
+    this.crop = { x: Math.min(x0, x1), y: Math.min(y0, y1), width: Math.abs(x1 - x0), height: Math.abs(y1 - y0) };
+    if (this.crop.width * this.set.width < 2 || this.crop.height * this.set.height < 2) this.crop = null;
+    this.place();
+  }
+
+  placeCrop() {
+    const { root, crop } = this, mark = root.querySelector(".mark"), line = root.querySelector(".crop");
+    mark.hidden = line.hidden = !crop || this.mode === "pair";
+    if (!crop) return;
+    mark.style.left = `${100 * (view.x + crop.x * view.scale)}%`, mark.style.top = `${100 * (view.y + crop.y * view.scale)}%`;
+    mark.style.width = `${100 * crop.width * view.scale}%`, mark.style.height = `${100 * crop.height * view.scale}%`;
+    const box = [crop.x, crop.y, crop.width, crop.height].map(v => Number(v.toFixed(4)));
+    line.querySelector(".box").textContent = `{"scene": "${this.set.scene}", "frame": ${this.set.frame}, "spp": ${this.set.spp}, "crops": [{"box": [${box.join(", ")}]}]}`;
   }
 
   key(event) {
@@ -136,6 +157,7 @@ class Viewer {
   }
 
   place() {
+    this.placeCrop();
     const { root, mode } = this, a = root.querySelector(".pane.a"), b = root.querySelector(".pane.b");
     // Enlarged pixels stay squares: what is between them was never computed.
     root.classList.toggle("pixels", this.stage.clientWidth * view.scale >= 1.5 * this.set.width);

@@ -61,6 +61,35 @@ TEST(Intervals, PairsRemoveWhatBothShare) {
     EXPECT_FALSE(pairedInterval(a, std::vector<double>{0, 10, 5}, 0.95).excludesZero());
 }
 
+/// A value that is missing takes its pair with it, and nothing else: the pairs that are left belong together.
+TEST(Intervals, MissingValuesDoNotBreakPairs) {
+    const double missing = std::nan("");
+    const std::vector<double> a{11, missing, 1, 6, INFINITY}, b{10, 3, 0, missing, 2};
+    const Interval difference = pairedInterval(a, b, 0.95);
+    EXPECT_EQ(difference.count, 2);
+    EXPECT_DOUBLE_EQ(difference.mean, 1);
+    EXPECT_EQ(meanInterval(a, 0.95).count, 3);
+    EXPECT_DOUBLE_EQ(meanInterval(a, 0.95).mean, 6);
+    EXPECT_EQ(meanInterval(std::vector<double>{missing}, 0.95).count, 0);
+    // The second method has a value in one unit only: nothing tells it from the others.
+    const std::vector<Rank> ranks = rankMethods({{1, 1.1, 0.9}, {missing, missing, 5}, {3, 3.1, 2.9}}, false, 0.95);
+    EXPECT_EQ(ranks[0].best, 1);
+    EXPECT_EQ(ranks[0].worst, 2);
+    EXPECT_EQ(ranks[1].best, 1);
+    EXPECT_EQ(ranks[1].worst, 3);
+}
+
+/// Of the mean the jackknife is the mean's own interval.
+TEST(Intervals, TheJackknifeOfAMeanIsItsInterval) {
+    const std::vector<double> values{3, 4, 5, 6, 9};
+    std::vector<double> without;
+    for (const double left : values) without.push_back((27 - left) / 4);
+    const Interval jackknife = meanInterval(pseudoValues(27.0 / 5, without), 0.95), plain = meanInterval(values, 0.95);
+    EXPECT_NEAR(jackknife.mean, plain.mean, 1e-12);
+    EXPECT_NEAR(jackknife.low, plain.low, 1e-12);
+    EXPECT_TRUE(pseudoValues(1, std::vector<double>{1, 2}).empty()) << "two units are too few";
+}
+
 TEST(Ranks, AreGivenOnlyWhereTheNoiseAllows) {
     // Two that nobody can tell apart, and one far behind.
     const std::vector<std::vector<double>> errors{{1.0, 1.2, 0.9, 1.1}, {1.1, 1.0, 1.1, 0.9}, {5.0, 5.2, 4.9, 5.1}};

@@ -66,6 +66,22 @@ TEST(Plan, TuningComesBeforeWhatItTunes) {
     EXPECT_EQ(plan.jobs[1].kind, StudyJob::Kind::Measure);
 }
 
+/// A stage that is off stays off, whatever tuning chose; where it changes no samples it shares the whole method's.
+TEST(Plan, AblationsAreTheEntryWithoutEachStage) {
+    const StudyPlan plan = planStudy(parse(R"("scenes": ["cornell"], "frames": {"range": [0, 4]}, "tuning": {"frame": 1},
+        "entries": [{"name": "a", "module": "accumulate", "set": {"limit": true}, "tune": {"max-samples": [1, 2]}}, {"module": "none"}],
+        "ablations": [{"entry": "a", "stages": [{"name": "mean", "set": {"max-samples": 1}}, {"name": "depth", "set": {"path.max-depth": 2}}]}])"));
+    ASSERT_EQ(plan.methods.size(), 4u);
+    EXPECT_EQ(plan.methods[2].name, "a without mean");
+    EXPECT_EQ(plan.methods[2].whole, 0u);
+    EXPECT_EQ(plan.methods[2].fixed, std::vector<std::string>{"max-samples"});
+    EXPECT_EQ(plan.methods[2].set.front().id, "limit") << "the entry's own values stay";
+    EXPECT_FALSE(plan.methods[0].whole);
+    // The whole and the one without the mean share samples; the other depth does not.
+    EXPECT_EQ(plan.jobs[1].methods, (std::vector<size_t>{0, 2}));
+    EXPECT_EQ(plan.jobs.back().methods, std::vector<size_t>{3});
+}
+
 TEST(Plan, AnEntryMayHaveSampleCountsOfItsOwn) {
     const StudyPlan plan = planStudy(parse(R"("scenes": ["cornell"], "spp": [1],
         "entries": [{"name": "a", "module": "none"}, {"name": "b", "module": "none", "spp": [1, 8]}])"));
@@ -84,12 +100,14 @@ TEST(Plan, DefinitionsHoldWhatResultsDependOn) {
     };
     const std::string plain = definition("\"title\": \"a\"");
     EXPECT_EQ(plain, definition("\"title\": \"another title\""));
+    EXPECT_EQ(plain, definition("\"figures\": [{\"name\": \"f\", \"crops\": [{\"box\": [0, 0, 1, 1]}]}]"));
     EXPECT_EQ(plain, definition("\"pictures\": {\"error-map\": \"mse\"}"));
     std::set<std::string> all{plain};
     for (const char* member : {"\"size\": [8, 8]", "\"seeds\": [3]", "\"spp\": [2]", "\"reference\": {\"spp\": 64}",
                                "\"metrics\": [\"mse\"]", "\"set\": {\"path.max-depth\": 2}",
                                "\"reference\": {\"set\": {\"path.max-depth\": 2}}", "\"frames\": {\"range\": [0, 3]}",
-                               "\"frames\": {\"range\": [0, 3], \"still\": true}", "\"frames\": {\"range\": [0, 3], \"fps\": 24}"})
+                               "\"frames\": {\"range\": [0, 3], \"still\": true}", "\"frames\": {\"range\": [0, 3], \"fps\": 24}",
+                               "\"frames\": {\"range\": [0, 3], \"step\": {\"frame\": 1, \"set\": {\"light.lamp.power\": 2}}}"})
         EXPECT_TRUE(all.insert(definition(member)).second) << member;
     EXPECT_TRUE(all.insert(definition("\"title\": \"a\"", "\"component\": \"direct\"")).second);
     EXPECT_TRUE(all.insert(definition("\"title\": \"a\"", "\"path.clamp\": true")).second);

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "image/exr.h"
+#include "math/hash.h"
 #include "study/report.h"
 #include "study/results.h"
 #include "study/run_job.h"
 #include "study/study_file.h"
+#include "support/temporary_folder.h"
 
 namespace lumi::test {
 namespace {
@@ -66,6 +69,106 @@ TEST(Results, SummariesAreMeansOverSeedsWithRanksAndSlopes) {
     EXPECT_EQ(all.rankings.size(), 3u * 3 * 2) << "two scenes and all together, three sample counts, two metrics";
     for (const StudySlope& slope : all.slopes) EXPECT_NEAR(slope.slope.mean, -1, 1e-9);
     EXPECT_EQ(all.slopes.size(), 4u) << "errors only, a scene and method each";
+}
+
+/// A seed without a value leaves the mean, and its pairs leave the comparison; both are counted.
+TEST(Results, ImagesWithoutAValueAreCountedAndNeverBreakPairs) {
+    Sample s = sample();
+    for (StudyRow& row : s.records.rows) row.frame = -1;
+    for (StudyRow& row : s.records.rows)
+        if (row.scene == 0 && row.spp == 4 && row.seed == 2 && row.method == 0) row.metrics["ssim"] = std::nan("");
+    const StudySummaries all = summarize(s.study, s.plan, s.records);
+    const auto summary = [&](size_t scene, size_t method) {
+        return *std::find_if(all.metrics.begin(), all.metrics.end(), [&](const StudySummary& one) {
+            return one.scene == scene && one.method == method && one.spp == 4 && one.metric == "ssim";
+        });
+    };
+    EXPECT_EQ(summary(0, 0).interval.count, 2);
+    EXPECT_EQ(summary(0, 0).missing, 1);
+    EXPECT_EQ(summary(0, 1).interval.count, 3);
+    EXPECT_EQ(summary(kAllScenes, 0).missing, 1) << "a mean over scenes is no mean without one of them";
+    for (const StudyRanking& ranking : all.rankings)
+        if (ranking.scene == 0 && ranking.spp == 4 && ranking.metric == "ssim") {
+            EXPECT_EQ(ranking.places.back().toBest.count, 2) << "two complete pairs";
+            EXPECT_NEAR(ranking.places.back().toBest.mean, -0.1 / 4, 1e-12) << "of images that belong together";
+        }
+    const auto json = resultsJson(s.study, s.plan, s.records, all);
+    int64_t missing = 0;
+    for (const auto& entry : json["summary"]) missing += entry["missing"].get<int64_t>();
+    EXPECT_EQ(missing, 2);
+}
+
+void writeColour(const std::filesystem::path& path, const Image& image) {
+    ExrLayers layers;
+    layers.add("", "RGB", image);
+    writeExr(path, layers);
+}
+
+/// Four seeds of an image that is too bright by 0.2, with noise of variance 0.01; in one of them a pixel is NaN. That pixel
+/// counts in none, or it would look like one without error.
+TEST(Results, BiasAndVarianceLeaveOutPixelsThatAreNotFinite) {
+    TemporaryFolder folder;
+    const Extent2 extent{48, 32};
+    const Study study = parseStudy(R"({"version": 1, "scenes": ["cornell"], "seeds": [1, 2, 3, 4], "metrics": ["mse"], "entries": [{"module": "none"}]})", "t.json", "");
+    StudyRecords records;
+    records.references.push_back({0, 0, "r.exr", 0, {{"mse", 0}}, {}, 0});
+    Image reference(extent, 3);
+    reference.fill(0.5f);
+    writeColour(folder / "r.exr", reference);
+    uint64_t drawn = 0;
+    for (int seed = 1; seed <= 4; ++seed) {
+        Image image = reference;
+        for (size_t i = 0; i < image.size(); ++i) image.data()[i] += 0.2f + 0.1f * (mixBits(drawn++) & 1 ? 1.0f : -1.0f);
+        // Pixels with a large error, and NaN in one channel of one seed.
+        for (int channel = 0; channel < 3; ++channel) image.at(channel, 5, 5) = 100;
+        if (seed == 2) image.at(1, 5, 5) = NAN;
+        if (seed == 3) image.at(0, 7, 7) = INFINITY;
+        StudyRow row;
+        row.frame = 0, row.seed = seed, row.image = folder / (std::to_string(seed) + ".exr"), row.reference = folder / "r.exr";
+        row.nonFinitePixels = seed == 2 || seed == 3;
+        writeColour(row.image, image);
+        records.rows.push_back(row);
+    }
+    const StudySummaries all = summarize(study, planStudy(study), records);
+    ASSERT_EQ(all.biases.size(), 1u);
+    const StudyBias& bias = all.biases[0];
+    EXPECT_EQ(bias.pixelsLeftOut, 2);
+    EXPECT_EQ(bias.pixels, 48 * 32 - 2);
+    EXPECT_NEAR(bias.parts.squaredBias, 0.04, 0.002);
+    EXPECT_NEAR(bias.parts.variance, 0.01, 0.0005);
+    EXPECT_NEAR(bias.biasShare, 0.8, 0.02);
+    EXPECT_TRUE(bias.variance.known() && bias.share.known());
+    EXPECT_TRUE(bias.variance.low < 0.01 && 0.01 < bias.variance.high);
+    EXPECT_TRUE(bias.squaredBias.low < 0.04 && 0.04 < bias.squaredBias.high);
+    ASSERT_EQ(all.nonFinite.size(), 1u);
+    EXPECT_EQ(all.nonFinite[0].pixels, 2);
+    EXPECT_EQ(all.nonFinite[0].images, 2);
+    EXPECT_EQ(all.nonFinite[0].allImages, 4);
+}
+
+/// A stage's worth is a paired difference; those without a stage are not ranked among the entries.
+TEST(Results, AblationsArePairedDifferences) {
+    const Study study = parseStudy(R"({"version": 1, "scenes": ["cornell"], "seeds": [1, 2, 3], "metrics": ["mse"],
+        "entries": [{"name": "a", "module": "accumulate"}, {"name": "b", "module": "none"}],
+        "ablations": [{"entry": "a", "stages": [{"name": "limit", "set": {"limit": true}}]}]})", "t.json", "");
+    const StudyPlan plan = planStudy(study);
+    ASSERT_EQ(plan.methods.size(), 3u);
+    StudyRecords records;
+    for (size_t method = 0; method < 3; ++method)
+        for (const int seed : study.seeds) {
+            StudyRow row;
+            row.method = method, row.seed = seed;
+            row.metrics["mse"] = 10 * seed + (method == 2 ? 0.5 + 0.01 * seed : 0) + (method == 1 ? 100 : 0);
+            records.rows.push_back(row);
+        }
+    const StudySummaries all = summarize(study, plan, records);
+    ASSERT_EQ(all.stages.size(), 1u);
+    EXPECT_EQ(all.stages[0].without, 2u);
+    EXPECT_NEAR(all.stages[0].difference.mean, 0.52, 1e-12);
+    EXPECT_TRUE(all.stages[0].difference.excludesZero()) << "though the seeds differ by more";
+    EXPECT_FALSE(all.stages[0].wholeMean.low > 10);
+    ASSERT_EQ(all.rankings.size(), 1u);
+    EXPECT_EQ(all.rankings[0].places.size(), 2u);
 }
 
 TEST(Results, JsonHoldsNoNumberThatJsonCannot) {

@@ -35,13 +35,17 @@ TEST(StudyFile, EverythingIsRead) {
     const Study study = parse(R"({"version": 1, "title": "All", "paper": "Schied17", "description": "D",
       "scenes": ["cornell", {"scene": "room", "name": "night", "optional": true, "set": {"camera.select": "main"}}],
       "set": {"path.max-depth": 3}, "size": [320, 180],
-      "frames": {"range": [0, 64], "measure": [63, 40], "temporal": [20, 60], "still": true, "fps": 30},
+      "frames": {"range": [0, 64], "measure": [63, 40], "temporal": [20, 60], "still": true, "fps": 30,
+                 "step": {"frame": 20, "set": {"light.lamp.power": 2}}},
       "spp": [1, 4], "seeds": [7, 8], "reference": {"spp": 64, "set": {"path.max-depth": 9}},
-      "metrics": ["ssim", "mse"], "tuning": {"frame": 8, "metric": "mse", "seed": 5},
+      "metrics": ["ssim", "mse", "lag"], "tuning": {"frame": 8, "metric": "mse", "seed": 5},
       "entries": [{"name": "a", "module": "accumulate", "set": {"limit": true, "path.clamp": false}, "tune": {"max-samples": [2, 4]}},
                   {"module": "none", "spp": 2}],
       "sweep": {"axes": {"component": ["direct", "indirect"]}, "entries": ["none"]},
       "pairs": [{"entry": "a", "against": "none"}],
+      "ablations": [{"entry": "a", "stages": [{"name": "limit", "set": {"limit": false}}]}],
+      "figures": [{"name": "f", "scene": "night", "frame": 63, "spp": 4, "input": "none", "entries": ["a"], "metric": "mse",
+                   "crops": [{"name": "c", "box": [0.1, 0.2, 0.3, 0.4]}, {"box": [0, 0, 1, 1]}]}],
       "intervals": {"level": 0.9, "units": "frames-and-seeds", "method": "bootstrap"},
       "pictures": {"frames": [40], "spp": [4], "error-map": "relmse"}})");
     EXPECT_EQ(study.scenes[1].name, "night");
@@ -54,6 +58,11 @@ TEST(StudyFile, EverythingIsRead) {
     EXPECT_EQ(study.entries[1].spp, std::vector<int>{2});
     EXPECT_EQ(study.sweep->axes[0].id, "component");
     EXPECT_EQ(study.tuning->seed, 5);
+    EXPECT_EQ(study.frames.step->frame, 20);
+    EXPECT_EQ(study.temporalMetrics, std::vector<std::string>{"lag"});
+    EXPECT_EQ(study.ablations.at(0).stages.at(0).set.at(0).text, "false");
+    EXPECT_EQ(study.figures.at(0).crops.at(0).height, 0.4);
+    EXPECT_EQ(study.figures.at(0).scene, "night");
     EXPECT_EQ(study.intervals.units, StudyIntervals::Units::FramesAndSeeds);
     EXPECT_EQ(study.intervals.method, StudyIntervals::Method::Bootstrap);
     EXPECT_EQ(study.pictures.errorMap, "relmse");
@@ -102,6 +111,29 @@ TEST(StudyFile, ModuleParametersAreCheckedAgainstTheCatalogue) {
     refused(withMember(R"("sweep": {"axes": {"component": ["direct", "indrect"]}})"), {"indrect", ":3:"});
     refused(withMember(R"("sweep": {"axes": {}})"), {"one or two axes"});
     refused(withMember(R"("tuning": {"frame": 0}, "frames": {"range": [0, 2], "measure": [0]})"), {"a frame that is not measured"});
+}
+
+TEST(StudyFile, StepsAblationsAndFiguresAreChecked) {
+    const std::string entries = R"({"module": "accumulate"}, {"module": "none"})";
+    const auto member = [&](const std::string& text) { return withMember(text, entries); };
+    refused(member(R"("metrics": ["lag"])"), {":3:13", "\"step\"", "\"still\""});
+    refused(member(R"("frames": {"range": [0, 9], "step": {"frame": 0, "set": {"light.a.power": 1}}})"), {"\"frame\" is 0", "from 1 to 8"});
+    refused(member(R"("frames": {"range": [0, 9], "step": {"frame": 2, "set": {"path.clamp": true}}})"), {":3:", "path.clamp", "converged image"});
+    const auto stage = [&](const std::string& text) { return member("\"ablations\": [{\"entry\": \"accumulate\", \"stages\": [" + text + "]}]"); };
+    refused(stage(R"({"name": "a", "set": {"limitt": true}})"), {"limitt", "\"limit\"", ":3:"});
+    refused(stage(R"({"name": "a", "set": {}})"), {"what switches the stage off"});
+    refused(stage(R"({"name": "a", "set": {"limit": true}}, {"name": "a", "set": {"limit": true}})"), {"two stages are called \"a\""});
+    refused(member(R"("ablations": [{"entry": "acumulate", "stages": []}])"), {"unknown entry", "\"accumulate\""});
+    refused(member(R"("sweep": {"axes": {"path.max-depth": [1]}}, "ablations": [{"entry": "none", "stages": [{"name": "a", "set": {"path.clamp": true}}]}])"),
+            {"an entry that is not swept"});
+    const auto figure = [&](const std::string& text) { return member("\"figures\": [{\"name\": \"f\", " + text + "}]"); };
+    refused(figure(R"("crops": [{"box": [0.9, 0, 0.2, 0.1]}])"), {"\"box\"", "shares of the picture", ":3:"});
+    refused(figure(R"("crops": [{"box": [0, 0, 1]}])"), {"\"box\""});
+    refused(figure(R"("crops": [])"), {"one to six crops"});
+    refused(figure(R"("crops": [{"box": [0, 0, 1, 1]}], "scene": "cornel")"), {"unknown scene \"cornel\"", "\"cornell\""});
+    refused(figure(R"("crops": [{"box": [0, 0, 1, 1]}], "metric": "psnr2")"), {"unknown metric with a map"});
+    refused(figure(R"("crops": [{"box": [0, 0, 1, 1]}], "frame": 3)"), {"\"frame\""});
+    refused(member(R"("figures": [{"name": "a b", "crops": [{"box": [0,0,1,1]}]}, {"name": "a-b", "crops": [{"box": [0,0,1,1]}]}])"), {"two figures are called"});
 }
 
 TEST(StudyFile, BrokenJsonIsOneLineWithItsPlace) {

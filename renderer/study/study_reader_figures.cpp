@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "measure/measure.h"
+#include "study/plan.h"
+#include "study/study_reader.h"
+
+namespace lumi {
+namespace {
+
+StudyAblation::Stage readStage(const JsonTree& tree, const JsonValue& item, const StudyEntry& entry) {
+    ObjectReader reader(tree, item, "stage");
+    StudyAblation::Stage stage;
+    const JsonValue& name = reader.need("name");
+    stage.name = readText(tree, name, "name");
+    checkFileName(tree, name, stage.name);
+    const JsonValue& set = reader.need("set");
+    stage.set = readValues(tree, &set, "set");
+    if (stage.set.empty()) refuseValue(tree, set, "set", "what switches the stage off");
+    reader.finish();
+    for (const StudyValue& value : stage.set) checkModuleValue(entry.module, value);
+    return stage;
+}
+
+/// Four shares of the picture: left, top, width, height.
+StudyFigure::Crop readCrop(const JsonTree& tree, const JsonValue& item) {
+    ObjectReader reader(tree, item, "crop");
+    StudyFigure::Crop crop;
+    const JsonValue& box = reader.need("box");
+    const bool numbers = box.isArray() && box.items.size() == 4 &&
+                         std::all_of(box.items.begin(), box.items.end(), [](const JsonValue& v) { return v.isNumber(); });
+    if (numbers) crop.x = box.items[0].number, crop.y = box.items[1].number, crop.width = box.items[2].number, crop.height = box.items[3].number;
+    if (!numbers || crop.x < 0 || crop.y < 0 || !(crop.width > 0) || !(crop.height > 0) || crop.x + crop.width > 1 + 1e-9 ||
+        crop.y + crop.height > 1 + 1e-9)
+        refuseValue(tree, box, "box", "[left, top, width, height] as shares of the picture, from 0 to 1");
+    crop.name = reader.text("name").value_or("");
+    reader.finish();
+    return crop;
+}
+
+std::string readMapMetric(const JsonTree& tree, const JsonValue& value) {
+    const std::string metric = readText(tree, value, "metric");
+    std::vector<std::string> known;
+    for (const Metric& one : metricCatalog())
+        if (one.mapColours) known.push_back(one.id);
+    if (std::find(known.begin(), known.end(), metric) == known.end())
+        refuseName(tree, value.at, "metric with a map", metric, known);
+    return metric;
+}
+
+int64_t readMeasuredFrame(const JsonTree& tree, const JsonValue& value, const Study& study) {
+    const int64_t frame = readWholes(tree, value, "frame", 0, study.frames.end - 1).front();
+    if (!std::count(study.frames.measure.begin(), study.frames.measure.end(), frame))
+        refuseValue(tree, value, "frame", "a frame that is measured");
+    return frame;
+}
+
+void readWhere(const JsonTree& tree, ObjectReader& reader, const Study& study, StudyFigure& figure) {
+    if (const JsonValue* scene = reader.find("scene")) {
+        figure.scene = readText(tree, *scene, "scene");
+        std::vector<std::string> names;
+        for (const StudyScene& known : study.scenes) names.push_back(known.name);
+        if (std::find(names.begin(), names.end(), figure.scene) == names.end())
+            refuseName(tree, scene->at, "scene", figure.scene, names);
+    }
+    if (const JsonValue* frame = reader.find("frame")) figure.frame = readMeasuredFrame(tree, *frame, study);
+    figure.spp = reader.integer("spp", 1, 65536).value_or(0);
+    if (const JsonValue* input = reader.find("input")) figure.input = readEntryName(tree, *input, study, "input");
+    if (const JsonValue* entries = reader.find("entries")) {
+        readTexts(tree, *entries, "entries");
+        for (const JsonValue& item : entries->items) figure.entries.push_back(readEntryName(tree, item, study, "entries"));
+    }
+    if (const JsonValue* metric = reader.find("metric")) figure.metric = readMapMetric(tree, *metric);
+}
+
+}  // namespace
+
+void checkFileName(const JsonTree& tree, const JsonValue& value, const std::string& name) {
+    const bool good = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+        return std::isalnum(c) || c == '-' || c == '_' || c == '.' || c == '+' || c == ' ' || c == '=' || c == '/';
+    });
+    if (!good) refuseValue(tree, value, "name", "letters, digits, spaces and any of - _ . + = /");
+}
+
+std::string readEntryName(const JsonTree& tree, const JsonValue& value, const Study& study, const std::string& name) {
+    const std::string text = readText(tree, value, name);
+    std::vector<std::string> names;
+    for (const StudyEntry& entry : study.entries) names.push_back(entry.name);
+    if (!study.entry(text)) refuseName(tree, value.at, "entry", text, names);
+    return text;
+}
+
+void readAblations(const JsonTree& tree, const JsonValue* section, Study& study) {
+    if (!section) return;
+    if (!section->isArray()) refuseValue(tree, *section, "ablations", "an array of ablations");
+    for (const JsonValue& item : section->items) {
+        ObjectReader reader(tree, item, "ablation");
+        StudyAblation ablation;
+        const JsonValue& entry = reader.need("entry");
+        ablation.entry = readEntryName(tree, entry, study, "entry");
+        const bool swept = study.sweep && (study.sweep->entries.empty() || std::count(study.sweep->entries.begin(),
+                                                                                     study.sweep->entries.end(), ablation.entry));
+        if (swept) refuseValue(tree, entry, "entry", "an entry that is not swept");
+        for (const StudyAblation& earlier : study.ablations)
+            if (earlier.entry == ablation.entry) refuseValue(tree, entry, "entry", "each entry once");
+        const JsonValue& stages = reader.need("stages");
+        if (!stages.isArray() || stages.items.empty()) refuseValue(tree, stages, "stages", "an array of stages");
+        for (const JsonValue& stage : stages.items) {
+            ablation.stages.push_back(readStage(tree, stage, *study.entry(ablation.entry)));
+            const std::string method = ablation.entry + " without " + ablation.stages.back().name;
+            if (study.entry(method)) throwBadInput({fmt::format("an entry is called \"{}\" already", method), tree.where(stage.at), "", ""});
+            for (size_t i = 0; i + 1 < ablation.stages.size(); ++i)
+                if (ablation.stages[i].name == ablation.stages.back().name)
+                    throwBadInput({fmt::format("two stages are called \"{}\"", ablation.stages[i].name), tree.where(stage.at), "", ""});
+        }
+        reader.finish();
+        study.ablations.push_back(std::move(ablation));
+    }
+}
+
+void readFigures(const JsonTree& tree, const JsonValue* section, Study& study) {
+    if (!section) return;
+    if (!section->isArray()) refuseValue(tree, *section, "figures", "an array of figures");
+    for (const JsonValue& item : section->items) {
+        ObjectReader reader(tree, item, "figure");
+        StudyFigure figure;
+        const JsonValue& name = reader.need("name");
+        figure.name = readText(tree, name, "name");
+        checkFileName(tree, name, figure.name);
+        for (const StudyFigure& earlier : study.figures)
+            if (fileNameOf(earlier.name) == fileNameOf(figure.name))
+                throwBadInput({fmt::format("two figures are called \"{}\"", figure.name), tree.where(name.at), "", ""});
+        readWhere(tree, reader, study, figure);
+        const JsonValue& crops = reader.need("crops");
+        if (!crops.isArray() || crops.items.empty() || crops.items.size() > 6)
+            refuseValue(tree, crops, "crops", "an array of one to six crops");
+        for (const JsonValue& crop : crops.items) figure.crops.push_back(readCrop(tree, crop));
+        reader.finish();
+        study.figures.push_back(std::move(figure));
+    }
+}
+
+}  // namespace lumi

@@ -1,0 +1,143 @@
+#include "study/times.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+
+namespace lumi {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// The interval of one time of every seed.
+template <class Of>
+Interval timeInterval(const Study& study, const std::vector<const StudyTime*>& times, Of&& of) {
+    std::vector<double> values;
+    for (const StudyTime* time : times) values.push_back(of(*time));
+    return meanInterval(values, study.intervals.level);
+}
+
+std::vector<StudyMeanTime> meanTimes(const Study& study, const StudyRecords& records) {
+    std::map<std::tuple<size_t, int, size_t>, std::vector<const StudyTime*>> groups;
+    for (const StudyTime& time : records.times) groups[{time.scene, time.spp, time.method}].push_back(&time);
+    std::vector<StudyMeanTime> means;
+    for (const auto& [key, times] : groups) {
+        StudyMeanTime mean;
+        std::tie(mean.scene, mean.spp, mean.method) = key;
+        mean.frameMs = timeInterval(study, times, [](const StudyTime& time) { return time.frameMs(); });
+        mean.poseMs = timeInterval(study, times, [](const StudyTime& time) { return time.poseMs; });
+        mean.traceMs = timeInterval(study, times, [](const StudyTime& time) { return time.traceMs; });
+        mean.runMs = timeInterval(study, times, [](const StudyTime& time) { return time.runMs; });
+        mean.raysPerFrame = timeInterval(study, times, [](const StudyTime& time) { return time.raysPerFrame; });
+        std::map<std::string, bool> stages;
+        for (const StudyTime* time : times)
+            for (const auto& [stage, ms] : time->stagesMs) stages[stage] = true;
+        for (const auto& [stage, ignored] : stages)
+            mean.stagesMs[stage] = timeInterval(study, times, [&, name = stage](const StudyTime& time) {
+                const auto found = time.stagesMs.find(name);
+                return found == time.stagesMs.end() ? 0 : found->second;
+            });
+        for (const int seed : study.seeds) {
+            const auto own = std::find_if(times.begin(), times.end(), [&](const StudyTime* time) { return time->seed == seed; });
+            mean.frameMsBySeed.push_back(own == times.end() ? kNaN : (*own)->frameMs());
+        }
+        means.push_back(std::move(mean));
+    }
+    return means;
+}
+
+/// A seed's time and metric at each of a method's sample counts, ascending in time where noise allows it.
+struct TimeCurve {
+    std::vector<double> ms, value;
+};
+
+TimeCurve timeCurve(const StudyTimes& times, const SeedCurve& curve, size_t scene, size_t method, size_t seed) {
+    TimeCurve result;
+    for (size_t i = 0; i < curve.spp.size(); ++i) {
+        const StudyMeanTime* time = times.find(scene, method, static_cast<int>(curve.spp[i]));
+        if (!time || !std::isfinite(time->frameMsBySeed[seed]) || !std::isfinite(curve.value[i])) continue;
+        result.ms.push_back(time->frameMsBySeed[seed]);
+        result.value.push_back(curve.value[i]);
+    }
+    return result;
+}
+
+/// One seed's numbers of a pair.
+struct SeedEqual {
+    double otherAtTime = kNaN, otherMs = kNaN;
+};
+
+SeedEqual equalOf(const TimeCurve& other, double ms, double value, bool higher) {
+    SeedEqual equal;
+    if (std::is_sorted(other.ms.begin(), other.ms.end())) equal.otherAtTime = logLogAt(other.ms, other.value, ms);
+    TimeCurve byValue = other;
+    if (!higher) std::reverse(byValue.ms.begin(), byValue.ms.end()), std::reverse(byValue.value.begin(), byValue.value.end());
+    if (std::is_sorted(byValue.value.begin(), byValue.value.end())) equal.otherMs = logLogAt(byValue.value, byValue.ms, value);
+    return equal;
+}
+
+void addPair(const Study& study, const StudyRowIndex& rows, const StudyMeanTime& time, size_t other, const std::string& metric,
+             StudyTimes& times) {
+    const std::vector<SeedCurve> own = seedCurves(study, rows, time.scene, time.method, metric);
+    const std::vector<SeedCurve> against = seedCurves(study, rows, time.scene, other, metric);
+    std::vector<double> values, atTime, differences, otherMs, ratios;
+    for (size_t seed = 0; seed < study.seeds.size(); ++seed) {
+        const auto point = std::find(own[seed].spp.begin(), own[seed].spp.end(), time.spp);
+        if (point == own[seed].spp.end()) continue;
+        const double value = own[seed].value[static_cast<size_t>(point - own[seed].spp.begin())], ms = time.frameMsBySeed[seed];
+        const SeedEqual equal = equalOf(timeCurve(times, against[seed], time.scene, other, seed), ms, value, higherIsBetter(metric));
+        values.push_back(value);
+        atTime.push_back(equal.otherAtTime);
+        differences.push_back(value - equal.otherAtTime);
+        otherMs.push_back(equal.otherMs);
+        ratios.push_back(equal.otherMs / ms);
+    }
+    if (values.empty()) return;
+    const auto interval = [&](const std::vector<double>& list) {
+        return meanInterval(list, study.intervals.level, intervalMethod(study));
+    };
+    times.pairs.push_back({time.scene, time.method, other, time.spp, metric, time.frameMs, interval(values), interval(atTime),
+                           interval(differences), interval(otherMs), interval(ratios)});
+}
+
+void addPairs(const Study& study, const StudyPlan& plan, const StudyRowIndex& rows, StudyTimes& times) {
+    for (const StudyPair& pair : study.pairs)
+        for (const StudyMeanTime& time : times.methods)
+            for (size_t other = 0; other < plan.methods.size(); ++other) {
+                if (study.entries[plan.methods[time.method].entry].name != pair.entry || plan.methods[time.method].whole ||
+                    study.entries[plan.methods[other].entry].name != pair.against || plan.methods[other].whole)
+                    continue;
+                for (const std::string& metric : allMetrics(study)) addPair(study, rows, time, other, metric, times);
+            }
+}
+
+void addStages(const Study& study, const StudyPlan& plan, StudyTimes& times) {
+    for (const StudyMeanTime& time : times.methods) {
+        if (!plan.methods[time.method].whole) continue;
+        const size_t whole = *plan.methods[time.method].whole;
+        const StudyMeanTime* with = times.find(time.scene, whole, time.spp);
+        if (with)
+            times.stages.push_back({time.scene, whole, time.method, time.spp, with->frameMs, time.frameMs,
+                                    pairedInterval(time.frameMsBySeed, with->frameMsBySeed, study.intervals.level)});
+    }
+}
+
+}  // namespace
+
+const StudyMeanTime* StudyTimes::find(size_t scene, size_t method, int spp) const {
+    for (const StudyMeanTime& time : methods)
+        if (time.scene == scene && time.method == method && time.spp == spp) return &time;
+    return nullptr;
+}
+
+StudyTimes summarizeTimes(const Study& study, const StudyPlan& plan, const StudyRecords& records) {
+    StudyTimes times;
+    times.methods = meanTimes(study, records);
+    addPairs(study, plan, StudyRowIndex(records), times);
+    addStages(study, plan, times);
+    return times;
+}
+
+}  // namespace lumi
