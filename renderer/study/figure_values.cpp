@@ -124,7 +124,7 @@ FigureContent figureContent(const Study& study, const StudyPlan& plan, const Stu
             const Image image = readColour(row->image);
             const bool first = row == rows[method].front();
             if (first) column.picture = shown(image, "RGB", colours), errors.emplace_back();
-            measureImage(metric, {image, reference, {}, colours.exposureEv}, content.boxes, column, first ? &errors.back() : nullptr);
+            measureImage(metric, {image, reference, {}, colours.exposureEv, study.metricSettings}, content.boxes, column, first ? &errors.back() : nullptr);
         }
         content.columns.push_back(std::move(column));
     }

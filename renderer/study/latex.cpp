@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "measure/measure.h"
 #include "study/number_text.h"
 #include "study/report.h"
 #include "study/report_resources.h"
-#include "study/temporal_metrics.h"
 
 namespace lumi {
 namespace {
@@ -21,13 +19,7 @@ struct Rows {
 };
 
 std::string metricTitle(const std::string& id) {
-    const TemporalMetric* temporal = findTemporalMetric(id);
-    return escapedLatex(temporal ? temporal->title : findMetric(id).title) + (higherIsBetter(id) ? " $\\uparrow$" : " $\\downarrow$");
-}
-
-std::string definitionOf(const std::string& id) {
-    const TemporalMetric* temporal = findTemporalMetric(id);
-    return escapedLatex(temporal ? temporal->definition : findMetric(id).definition);
+    return escapedLatex(titleOf(id)) + (higherIsBetter(id) ? " $\\uparrow$" : " $\\downarrow$");
 }
 
 std::string cell(const Interval& interval, bool strong = false) { return latexText(numberText(interval), strong); }
@@ -166,7 +158,7 @@ Rows ablationRows(const Study& study, const StudyPlan& plan, const StudySummarie
 
 Rows definitionRows(const Study& study) {
     Rows rows{"metrics", "Metrics", "The metrics of " + escapedLatex(study.title) + ".", "lp{0.78\\textwidth}", "Metric & Definition", {}};
-    for (const std::string& metric : allMetrics(study)) rows.lines.push_back(metricTitle(metric) + " & " + definitionOf(metric));
+    for (const std::string& metric : allMetrics(study)) rows.lines.push_back(metricTitle(metric) + " & " + escapedLatex(definitionOf(study, metric)));
     return rows;
 }
 

@@ -98,6 +98,9 @@ std::string commonDefinition(const Study& study, const StudyScene& scene, int sp
                                    study.frames.begin, study.frames.end, spp);
     text += fmt::format("still {};fps {};reference {};", study.frames.still, study.frames.fps, study.reference.spp);
     text += textOf(scene.set) + textOf(study.set) + "ref " + textOf(study.reference.set);
+    const MetricSettings& settings = study.metricSettings;
+    if (settings != MetricSettings{}) text += fmt::format("relmse {};", settings.relMseEpsilon);
+    if (const auto& range = settings.flipExposures) text += fmt::format("exposures {} {} {};", range->start, range->stop, range->count);
     if (study.frames.step) text += fmt::format("step {} {}", study.frames.step->frame, textOf(study.frames.step->set));
     return text;
 }

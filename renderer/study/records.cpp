@@ -63,7 +63,7 @@ void StudyRecords::add(const StudyPlan& plan, const StudyJob& job, const json& r
     std::map<int64_t, std::string> files;
     for (const json& reference : result.at("references")) {
         StudyReferenceNote note{job.scene, reference.at("frame"), reference.at("file"), reference.at("exposure"), numbers(reference.at("floor")),
-                                numbers(reference.at("own")), reference.at("nonfinite_pixels")};
+                                numbers(reference.at("own")), reference.at("nonfinite_pixels"), numbers(reference.at("details"))};
         files[note.frame] = note.file;
         const bool known = std::any_of(references.begin(), references.end(), [&](const auto& r) { return r.file == note.file; });
         if (!known) references.push_back(std::move(note));
@@ -73,6 +73,7 @@ void StudyRecords::add(const StudyPlan& plan, const StudyJob& job, const json& r
         row.scene = job.scene, row.method = methodNamed(plan, entry.at("method"));
         row.frame = entry.at("frame"), row.spp = job.spp, row.seed = job.seed;
         row.metrics = numbers(entry.at("metrics")), row.corrected = numbers(entry.at("corrected"));
+        for (const auto& [id, reason] : entry.at("reasons").items()) row.reasons[id] = reason;
         row.nonFinitePixels = entry.at("nonfinite_pixels");
         row.image = folder / imageFileName(row.method, row.frame);
         row.reference = out / files.at(row.frame);
@@ -83,6 +84,7 @@ void StudyRecords::add(const StudyPlan& plan, const StudyJob& job, const json& r
         row.scene = job.scene, row.method = methodNamed(plan, sequence.at("method")), row.spp = job.spp, row.seed = job.seed;
         for (const auto& [metric, value] : sequence.at("metrics").items()) {
             row.metrics[metric] = number(value.at("mean"));
+            if (value.contains("reason") && !value.at("reason").get<std::string>().empty()) row.reasons[metric] = value.at("reason");
             StudySeries one{row.scene, row.method, row.spp, row.seed, metric, value.at("begin"), {}};
             for (const json& frame : value.at("frames")) one.values.push_back(number(frame));
             series.push_back(std::move(one));

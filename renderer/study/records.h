@@ -16,6 +16,7 @@ struct StudyRow {
     int spp = 1, seed = 0;
     std::map<std::string, double> metrics;
     std::map<std::string, double> corrected;  ///< without the reference's own error, where it can be taken off
+    std::map<std::string, std::string> reasons;  ///< why a metric has no value, where it has none
     int64_t nonFinitePixels = 0;
     std::filesystem::path image, reference;  ///< of a frame; where they are
 
@@ -40,6 +41,7 @@ struct StudyReferenceNote {
     std::map<std::string, double> floor;  ///< by metric: what the reference's noise alone is worth
     std::map<std::string, double> own;    ///< of metrics that judge one image: the reference's
     int64_t nonFinitePixels = 0;
+    std::map<std::string, double> details;  ///< what metrics take from it
 };
 
 /// What tuning chose.

@@ -11,10 +11,11 @@ namespace {
 /// References that stay in memory: those of the measured frames of one scene, usually.
 constexpr size_t kKept = 8;
 
-double measured(const std::string& metric, const Image& image, const Image& reference, float exposureEv) {
-    ImagePair pair{image, reference, {}, exposureEv};
+Measurement measured(const std::string& metric, const Image& image, const Image& reference, float exposureEv,
+                     const MetricSettings& settings) {
+    ImagePair pair{image, reference, {}, exposureEv, settings};
     pair.prepare();
-    return findMetric(metric).measure(pair, false).value;
+    return findMetric(metric).measure(pair, false);
 }
 
 Image meanOf(const Image& a, const Image& b) {
@@ -70,13 +71,21 @@ std::shared_ptr<StudyReferenceFrame> StudyReferences::make(const Document& probl
     frame->image = meanOf(halves[0], halves[1]);
     frame->half = std::move(halves[0]);
     const float exposure = metricExposure(problem);
-    for (const std::string& metric : study_.metrics)
-        frame->floor[metric] = measured(metric, frame->half, frame->image, exposure);
-    frame->floor["mse"] = measured("mse", frame->half, frame->image, exposure);
-    if (study_.measures("cpbd")) frame->own["cpbd"] = measured("cpbd", frame->image, frame->image, exposure);
+    const auto measure = [&](const std::string& metric, const Image& image) {
+        return measured(metric, image, frame->image, exposure, study_.metricSettings);
+    };
+    for (const std::string& metric : study_.metrics) {
+        const Measurement floor = measure(metric, frame->half);
+        frame->floor[metric] = floor.value;
+        // The exposures of HDR-FLIP are the reference's, whatever is compared with it.
+        if (metric == "hdr_flip")
+            for (const auto& [name, value] : floor.details) frame->details["hdr_flip " + name] = value;
+    }
+    frame->floor["mse"] = measure("mse", frame->half).value;
+    if (study_.measures("cpbd")) frame->own["cpbd"] = measure("cpbd", frame->image).value;
     ImagePair itself{frame->image, frame->image};
     itself.prepare();
-    frame->nonFinitePixels = itself.nonFinitePixels;
+    frame->nonFinitePixels = itself.nonFiniteReference;
     return frame;
 }
 

@@ -24,6 +24,7 @@ struct StudyReferenceFrame {
     /// that means anything.
     std::map<std::string, double> floor;
     std::map<std::string, double> own;  ///< of metrics that judge one image (cpbd): the reference's
+    std::map<std::string, double> details;  ///< what metrics take from the reference: "hdr_flip start_exposure"
     int64_t nonFinitePixels = 0;
     bool cached = false;
 };

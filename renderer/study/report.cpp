@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/isa.h"
-#include "measure/measure.h"
 #include "study/report_resources.h"
 #include "study/results.h"
 #include "study/run_job.h"
@@ -82,16 +81,10 @@ Json studyData(const Study& study, const StudyPlan& plan) {
 
 Json metricData(const Study& study) {
     Json all = Json::object();
-    for (const std::string& id : study.metrics) {
-        const Metric& metric = findMetric(id);
-        all[id] = {{"title", metric.title}, {"definition", metric.definition}, {"higher", metric.higherIsBetter},
-                   {"temporal", false}};
+    for (const std::string& id : allMetrics(study)) {
+        all[id] = {{"title", titleOf(id)}, {"definition", definitionOf(study, id)}, {"higher", higherIsBetter(id)},
+                   {"temporal", findTemporalMetric(id) != nullptr}};
         all[id]["squared"] = !isSquaredError(id) ? Json(false) : Json(id == "rmse" ? "root" : "mean");
-    }
-    for (const std::string& id : study.temporalMetrics) {
-        const TemporalMetric& metric = *findTemporalMetric(id);
-        all[id] = {{"title", metric.title}, {"definition", metric.definition}, {"higher", false}, {"temporal", true},
-                   {"squared", false}};
     }
     return all;
 }

@@ -67,7 +67,7 @@ Json pictureSet(const Study& study, const StudyPlan& plan, const StudyRecords& r
     Json images = Json::array();
     std::vector<Image> maps;
     for (const StudyRow* row : rows) {
-        ImagePair pair{readColour(row->image), readColour(row->reference), {}, exposure};
+        ImagePair pair{readColour(row->image), readColour(row->reference), {}, exposure, study.metricSettings};
         images.push_back({{"name", plan.methods[row->method].name}, {"kind", "method"}, {"png", pngUri(pair.image, "RGB", colours)}});
         pair.prepare();
         maps.push_back(metric.measure(pair, true).map);

@@ -46,6 +46,7 @@ Json rowsJson(const Study& study, const StudyPlan& plan, const StudyRecords& rec
             for (size_t i = 0; i < method.coordinates.size(); ++i)
                 entry["sweep"][study.sweep->axes[i].id] = method.coordinates[i];
         entry["metrics"] = valuesJson(row.metrics);
+        if (!row.reasons.empty()) entry["reasons"] = row.reasons;
         if (row.frame >= 0) {
             entry["corrected"] = valuesJson(row.corrected);
             entry["nonfinite_pixels"] = row.nonFinitePixels;
@@ -169,7 +170,7 @@ Json referencesJson(const Study& study, const StudyRecords& records) {
     Json list = Json::array();
     for (const StudyReferenceNote& note : records.references)
         list.push_back({{"scene", study.scenes[note.scene].name}, {"frame", note.frame}, {"spp", study.reference.spp},
-                        {"file", note.file}, {"floor", valuesJson(note.floor)}, {"own", valuesJson(note.own)},
+                        {"file", note.file}, {"floor", valuesJson(note.floor)}, {"own", valuesJson(note.own)}, {"details", valuesJson(note.details)},
                         {"nonfinite_pixels", note.nonFinitePixels}});
     return list;
 }

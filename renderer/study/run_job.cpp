@@ -9,8 +9,8 @@
 #include "base/error.h"
 #include "image/exr.h"
 #include "math/statistics.h"
+#include "measure/lag.h"
 #include "measure/measure.h"
-#include "measure/temporal.h"
 #include "study/frame_runner.h"
 #include "study/temporal_metrics.h"
 
@@ -49,15 +49,16 @@ private:
 };
 
 json measureRow(const JobContext& context, const Image& image, const StudyReferenceFrame& reference, float exposureEv) {
-    ImagePair pair{image, reference.image, {}, exposureEv};
+    ImagePair pair{image, reference.image, {}, exposureEv, context.study.metricSettings};
     pair.prepare();
-    json metrics = json::object(), corrected = json::object();
+    json metrics = json::object(), corrected = json::object(), reasons = json::object();
     for (const std::string& id : context.study.metrics) {
-        const double value = findMetric(id).measure(pair, false).value;
-        metrics[id] = value;
-        if (isSquaredError(id)) corrected[id] = withoutReferenceNoise(id, value, reference.floor.at(id));
+        const Measurement measured = findMetric(id).measure(pair, false);
+        metrics[id] = measured.value;
+        if (isSquaredError(id)) corrected[id] = withoutReferenceNoise(id, measured.value, reference.floor.at(id));
+        if (!measured.reason.empty()) reasons[id] = measured.reason;
     }
-    return {{"metrics", metrics}, {"corrected", corrected}, {"nonfinite_pixels", pair.nonFinitePixels}};
+    return {{"metrics", metrics}, {"corrected", corrected}, {"reasons", reasons}, {"nonfinite_pixels", pair.nonFiniteImage}};
 }
 
 /// 1 where a surface is seen that does not shine itself, nor does a pixel beside it: emission and sky, which methods pass
@@ -115,8 +116,8 @@ public:
             metrics[id] = {{"mean", sum / static_cast<double>(values.size())}, {"begin", study_.frames.temporalBegin}, {"frames", values}};
         }
         if (!lags_.empty()) {
-            const int64_t lag = lags_[method].lag();
-            metrics["lag"] = {{"mean", lag < 0 ? json(nullptr) : json(lag)}, {"begin", step()}, {"frames", lags_[method].curve()}};
+            const Lag lag = lags_[method].lag(step());
+            metrics["lag"] = {{"mean", lag.value}, {"begin", step()}, {"frames", lag.curve}, {"reason", lag.reason}};
         }
         return metrics;
     }
@@ -147,7 +148,7 @@ json referenceJson(const Study& study, const StudyJob& job, int64_t frame, const
                    float exposureEv, const std::filesystem::path& out) {
     const std::string file = fmt::format("references/{}-{}.{:04}.exr", fileNameOf(study.scenes[job.scene].name), reference.key, frame);
     if (!std::filesystem::exists(out / file)) writeImage(out / file, reference.image);
-    return {{"frame", frame}, {"file", file}, {"exposure", exposureEv}, {"floor", reference.floor}, {"own", reference.own},
+    return {{"frame", frame}, {"file", file}, {"exposure", exposureEv}, {"floor", reference.floor}, {"own", reference.own}, {"details", reference.details},
             {"nonfinite_pixels", reference.nonFinitePixels}};
 }
 
@@ -240,17 +241,20 @@ json runTuneJob(const JobContext& context, const StudyJob& job) {
     json result = {{"candidates", json::array()}};
     double best = std::numeric_limits<double>::quiet_NaN();
     for (size_t i = 0; i < candidates.size(); ++i) {
-        ImagePair pair{*frame->results.at(methods[i].instance), reference->image, {}, runner.exposure()};
+        ImagePair pair{*frame->results.at(methods[i].instance), reference->image, {}, runner.exposure(), study.metricSettings};
         pair.prepare();
         const double value = metric.measure(pair, false).value;
         json values = json::object();
         for (const StudyValue& chosen : candidates[i]) values[chosen.id] = chosen.text;
         result["candidates"].push_back({{"values", values}, {"metric", value}});
-        // The first of equals stays, so that the choice never depends on chance.
-        if (i > 0 && !(metric.higherIsBetter ? value > best : value < best)) continue;
+        // The first of equals stays, so that the choice never depends on chance; what has no value is never chosen.
+        if (std::isnan(value) || (!std::isnan(best) && !(metric.higherIsBetter ? value > best : value < best))) continue;
         best = value;
         result["chosen"] = values;
     }
+    if (std::isnan(best))
+        throwBadInput({fmt::format("no combination of \"{}\" has a value of {} on frame {}", entry.name, study.tuning->metric, study.tuning->frame),
+                       study.path.string(), "images that can be measured", ""});
     return result;
 }
 

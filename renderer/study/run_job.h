@@ -25,8 +25,9 @@ struct JobContext {
 };
 
 /// What a job leaves is the same every time, as JSON and images; wall-clock times are apart.
-///     Measure: {"rows": [{"frame", "method", "metrics": {id: value}, "corrected": {id: value}, "nonfinite_pixels"}],
-///               "sequences": [{"method", "metrics": {id: {"mean", "begin", "frames": [values]}}}],
+///     Measure: {"rows": [{"frame", "method", "metrics": {id: value}, "corrected": {id: value}, "reasons": {id: why there is no
+///                         value}, "nonfinite_pixels"}],
+///               "sequences": [{"method", "metrics": {id: {"mean", "begin", "frames": [values], "reason"}}}],
 ///               "references": [{"frame", "file", "exposure", "floor": {id: value}, "own": {id: value}, "nonfinite_pixels"}]}
 ///     Tune:    {"chosen": {id: value}, "candidates": [{"values": {id: value}, "metric": value}]}
 /// Runs the job's frames from an empty history and measures; before it returns every image that is measured is in `folder`

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "math/vector.h"
+#include "measure/measure.h"
 
 namespace lumi {
 
@@ -135,6 +136,7 @@ struct Study {
     StudyReference reference;
     std::vector<std::string> metrics;          ///< of images, as `list metrics` names them
     std::vector<std::string> temporalMetrics;  ///< of sequences
+    MetricSettings metricSettings;             ///< for every metric, reference and figure
     std::optional<StudySweep> sweep;
     std::optional<StudyTuning> tuning;
     std::vector<StudyPair> pairs;

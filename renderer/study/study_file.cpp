@@ -189,6 +189,7 @@ void readBody(const JsonTree& tree, const JsonValue& merged, Study& study) {
     study.set = readValues(tree, top.find("set"), "set");
     readReference(tree, top.find("reference"), study.reference);
     readMetrics(tree, top.find("metrics"), study);
+    study.metricSettings = readMetricSettings(tree, top.find("metric-settings"));
     readTuning(tree, top.find("tuning"), study);
     readEntries(tree, top.need("entries"), study);
     readSweep(tree, top.find("sweep"), study);

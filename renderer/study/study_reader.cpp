@@ -158,6 +158,24 @@ StudyFrames readFrames(const JsonTree& tree, const JsonValue* section) {
     return frames;
 }
 
+MetricSettings readMetricSettings(const JsonTree& tree, const JsonValue* section) {
+    MetricSettings settings;
+    if (!section) return settings;
+    ObjectReader reader(tree, *section, "metric-settings");
+    settings.relMseEpsilon = reader.number("relmse-epsilon", 1e-12, 1e6).value_or(settings.relMseEpsilon);
+    if (const JsonValue* range = reader.find("hdr-flip-exposures")) {
+        const auto isEv = [](const JsonValue& value) { return value.isNumber() && std::abs(value.number) <= 100; };
+        const bool good = range->isArray() && (range->items.size() == 2 || range->items.size() == 3) && isEv(range->items[0]) &&
+                          isEv(range->items[1]) && range->items[0].number <= range->items[1].number;
+        if (!good) refuseValue(tree, *range, "hdr-flip-exposures", "[start, stop] or [start, stop, count] in EV");
+        settings.flipExposures = FlipExposures::over(range->items[0].number, range->items[1].number);
+        if (range->items.size() == 3)
+            settings.flipExposures->count = readInts(tree, range->items[2], "hdr-flip-exposures", 2, 64).front();
+    }
+    reader.finish();
+    return settings;
+}
+
 StudyIntervals readIntervals(const JsonTree& tree, const JsonValue* section) {
     StudyIntervals intervals;
     if (!section) return intervals;

@@ -32,6 +32,7 @@ std::string readEntryName(const JsonTree& tree, const JsonValue& value, const St
 void readAblations(const JsonTree& tree, const JsonValue* section, Study& study);
 void readFigures(const JsonTree& tree, const JsonValue* section, Study& study);
 
+MetricSettings readMetricSettings(const JsonTree& tree, const JsonValue* section);
 StudyFrames readFrames(const JsonTree& tree, const JsonValue* section);
 StudyIntervals readIntervals(const JsonTree& tree, const JsonValue* section);
 StudyPictures readPictures(const JsonTree& tree, const JsonValue* section);

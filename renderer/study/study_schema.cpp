@@ -121,6 +121,11 @@ Json bodySchema() {
                                {"set", reference("values")}},
                               "What images are compared with.");
     all["metrics"] = listOf(oneOfNames(metricIds(true), "As `lumiscope list metrics` names them."), "What is measured.");
+    Json exposures = listOf({{"type", "number"}, {"minimum", -100}, {"maximum", 100}}, "Start and stop in EV, and how many; by default what the reference says.", 2);
+    exposures["maxItems"] = 3;
+    all["metric-settings"] = closed({{"relmse-epsilon", {{"type", "number"}, {"minimum", 1e-12}, {"maximum", 1e6}, {"default", 0.001}}},
+                                     {"hdr-flip-exposures", std::move(exposures)}},
+                                    "What metrics are told beside the images.");
     all["sweep"] = closed({{"axes", reference("axes")}, {"entries", listOf(text("An entry's name."), "Which are swept; by default all.")}},
                           "Entries run with every combination of one or two parameters' values.", {"axes"});
     all["tuning"] = closed({{"frame", whole(0, 10'000'000, "A frame that is not measured.")},

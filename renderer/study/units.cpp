@@ -1,11 +1,14 @@
 #include "study/units.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
 #include "measure/measure.h"
+#include "study/run_job.h"
 #include "study/temporal_metrics.h"
 
 namespace lumi {
@@ -83,6 +86,21 @@ std::vector<std::string> allMetrics(const Study& study) {
     std::vector<std::string> metrics = study.metrics;
     metrics.insert(metrics.end(), study.temporalMetrics.begin(), study.temporalMetrics.end());
     return metrics;
+}
+
+std::string definitionOf(const Study& study, const std::string& metric) {
+    const TemporalMetric* temporal = findTemporalMetric(metric);
+    std::string text = temporal ? temporal->definition : findMetric(metric).definition;
+    if (metric == "relmse") text += fmt::format(" Here epsilon is {:g}.", study.metricSettings.relMseEpsilon);
+    if (const auto& range = study.metricSettings.flipExposures; range && metric == "hdr_flip")
+        text += fmt::format(" Here the exposures are {} from {:g} to {:g} EV.", range->count, range->start, range->stop);
+    if (isSquaredError(metric)) text += " The reference's own error is taken off.";
+    return text;
+}
+
+std::string titleOf(const std::string& metric) {
+    const TemporalMetric* temporal = findTemporalMetric(metric);
+    return temporal ? temporal->title : findMetric(metric).title;
 }
 
 bool higherIsBetter(const std::string& metric) {

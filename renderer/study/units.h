@@ -42,6 +42,9 @@ double finiteMean(const std::vector<double>& values);
 
 /// Images' metrics, then those of sequences.
 std::vector<std::string> allMetrics(const Study& study);
+/// A metric's definition, with what the study tells it.
+std::string definitionOf(const Study& study, const std::string& metric);
+std::string titleOf(const std::string& metric);
 bool higherIsBetter(const std::string& metric);
 IntervalMethod intervalMethod(const Study& study);
 

@@ -44,7 +44,7 @@ struct Made {
     StudyRecords records;
     Made() {
         write(folder / "reference.exr", flat(0.5f));
-        records.references.push_back({0, 0, "reference.exr", 0, {{"mse", 0}}, {}, 0});
+        records.references.push_back({0, 0, "reference.exr", 0, {{"mse", 0}}, {}, 0, {}});
         for (size_t seed = 0; seed < 3; ++seed)
             for (size_t method = 0; method < 3; ++method) {
                 const float wobble = 0.001f * static_cast<float>(seed);

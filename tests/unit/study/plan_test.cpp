@@ -106,7 +106,8 @@ TEST(Plan, DefinitionsHoldWhatResultsDependOn) {
     for (const char* member : {"\"size\": [8, 8]", "\"seeds\": [3]", "\"spp\": [2]", "\"reference\": {\"spp\": 64}",
                                "\"metrics\": [\"mse\"]", "\"set\": {\"path.max-depth\": 2}",
                                "\"reference\": {\"set\": {\"path.max-depth\": 2}}", "\"frames\": {\"range\": [0, 3]}",
-                               "\"frames\": {\"range\": [0, 3], \"still\": true}", "\"frames\": {\"range\": [0, 3], \"fps\": 24}",
+                               "\"frames\": {\"range\": [0, 3], \"still\": true}", "\"frames\": {\"range\": [0, 3], \"fps\": 24}", "\"metric-settings\": {\"relmse-epsilon\": 0.01}",
+                               "\"metric-settings\": {\"hdr-flip-exposures\": [0, 2]}",
                                "\"frames\": {\"range\": [0, 3], \"step\": {\"frame\": 1, \"set\": {\"light.lamp.power\": 2}}}"})
         EXPECT_TRUE(all.insert(definition(member)).second) << member;
     EXPECT_TRUE(all.insert(definition("\"title\": \"a\"", "\"component\": \"direct\"")).second);

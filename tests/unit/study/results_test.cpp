@@ -111,7 +111,7 @@ TEST(Results, BiasAndVarianceLeaveOutPixelsThatAreNotFinite) {
     const Extent2 extent{48, 32};
     const Study study = parseStudy(R"({"version": 1, "scenes": ["cornell"], "seeds": [1, 2, 3, 4], "metrics": ["mse"], "entries": [{"module": "none"}]})", "t.json", "");
     StudyRecords records;
-    records.references.push_back({0, 0, "r.exr", 0, {{"mse", 0}}, {}, 0});
+    records.references.push_back({0, 0, "r.exr", 0, {{"mse", 0}}, {}, 0, {}});
     Image reference(extent, 3);
     reference.fill(0.5f);
     writeColour(folder / "r.exr", reference);

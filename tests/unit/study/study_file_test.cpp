@@ -42,6 +42,7 @@ TEST(StudyFile, EverythingIsRead) {
       "entries": [{"name": "a", "module": "accumulate", "set": {"limit": true, "path.clamp": false}, "tune": {"max-samples": [2, 4]}},
                   {"module": "none", "spp": 2}],
       "sweep": {"axes": {"component": ["direct", "indirect"]}, "entries": ["none"]},
+      "metric-settings": {"relmse-epsilon": 0.01, "hdr-flip-exposures": [-2, 3]},
       "pairs": [{"entry": "a", "against": "none"}],
       "ablations": [{"entry": "a", "stages": [{"name": "limit", "set": {"limit": false}}]}],
       "figures": [{"name": "f", "scene": "night", "frame": 63, "spp": 4, "input": "none", "entries": ["a"], "metric": "mse",
@@ -58,6 +59,8 @@ TEST(StudyFile, EverythingIsRead) {
     EXPECT_EQ(study.entries[1].spp, std::vector<int>{2});
     EXPECT_EQ(study.sweep->axes[0].id, "component");
     EXPECT_EQ(study.tuning->seed, 5);
+    EXPECT_EQ(study.metricSettings.relMseEpsilon, 0.01);
+    EXPECT_EQ(*study.metricSettings.flipExposures, FlipExposures::over(-2, 3));
     EXPECT_EQ(study.frames.step->frame, 20);
     EXPECT_EQ(study.temporalMetrics, std::vector<std::string>{"lag"});
     EXPECT_EQ(study.ablations.at(0).stages.at(0).set.at(0).text, "false");
@@ -133,6 +136,8 @@ TEST(StudyFile, StepsAblationsAndFiguresAreChecked) {
     refused(figure(R"("crops": [{"box": [0, 0, 1, 1]}], "scene": "cornel")"), {"unknown scene \"cornel\"", "\"cornell\""});
     refused(figure(R"("crops": [{"box": [0, 0, 1, 1]}], "metric": "psnr2")"), {"unknown metric with a map"});
     refused(figure(R"("crops": [{"box": [0, 0, 1, 1]}], "frame": 3)"), {"\"frame\""});
+    refused(member(R"("metric-settings": {"relmse-epsilon": 0})"), {"\"relmse-epsilon\" is 0"});
+    refused(member(R"("metric-settings": {"hdr-flip-exposures": [3, -2]})"), {"\"hdr-flip-exposures\"", "[start, stop]"});
     refused(member(R"("figures": [{"name": "a b", "crops": [{"box": [0,0,1,1]}]}, {"name": "a-b", "crops": [{"box": [0,0,1,1]}]}])"), {"two figures are called"});
 }
 
