@@ -15,12 +15,14 @@ std::unique_ptr<Procedural> makeWindow();        ///< window.cpp: frame, mullion
 std::unique_ptr<Procedural> makeSofa();          ///< sofa.cpp
 std::unique_ptr<Procedural> makePillow();        ///< sofa.cpp
 std::unique_ptr<Procedural> makeTable();         ///< table.cpp
+std::unique_ptr<Procedural> makeChair();         ///< chair.cpp
 std::unique_ptr<Procedural> makeBookshelf();     ///< bookshelf.cpp
 std::unique_ptr<Procedural> makeBookStack();     ///< bookshelf.cpp
 std::unique_ptr<Procedural> makeRug();           ///< rug.cpp
 std::unique_ptr<Procedural> makePictureFrame();  ///< picture_frame.cpp
 std::unique_ptr<Procedural> makeFloorLamp();     ///< lamp.cpp
 std::unique_ptr<Procedural> makePlant();         ///< plant.cpp
+std::unique_ptr<Procedural> makeTree();          ///< tree.cpp
 std::unique_ptr<Procedural> makeVessel();        ///< vessel.cpp: vases, bowls, urns, candlesticks
 std::unique_ptr<Procedural> makeDrape();         ///< drape.cpp: hanging cloth
 std::unique_ptr<Procedural> makeTablecloth();    ///< tablecloth.cpp: cloth over a table's edge
