@@ -3,9 +3,12 @@
 #include <vector>
 
 #include "base/error.h"
+#include "reconstruct/aaf/aaf.h"
 #include "reconstruct/accumulate/accumulate.h"
+#include "reconstruct/asvgf/asvgf.h"
 #include "reconstruct/eaw/eaw.h"
 #include "reconstruct/none/none.h"
+#include "reconstruct/sbf/sbf.h"
 #include "reconstruct/svgf/svgf.h"
 #include "reconstruct/taa/taa.h"
 #include "reconstruct/temporal/temporal.h"
@@ -23,7 +26,10 @@ std::vector<ModuleEntry>& catalog() {
         {"none", "Raw frame", "", make<NoneModule>},
         {"accumulate", "Progressive mean", "", make<AccumulateModule>},
         {"svgf", "Spatiotemporal variance-guided filtering", "Schied17", make<SvgfModule>},
+        {"asvgf", "Adaptive SVGF", "Schied18", make<AsvgfModule>},
         {"eaw", "Edge-avoiding à-trous wavelets", "Dammertz10", make<EawModule>},
+        {"sbf", "SURE-based cross-bilateral bank", "Li12", make<SbfModule>},
+        {"aaf", "Axis-aligned filtering of soft shadows", "Mehta12", make<AafModule>},
         {"temporal", "Temporal accumulation", "Schied17", make<TemporalModule>},
         {"taa", "Temporal antialiasing", "Karis14", make<TaaModule>},
     };

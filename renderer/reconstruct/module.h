@@ -15,6 +15,7 @@
 namespace lumi {
 
 class Tracer;
+struct FrameSampling;
 
 using FrameNumber = int64_t;
 
@@ -49,7 +50,10 @@ struct FrameContext {
     const CameraPose& previousCamera;
     Changes changes;
     const TapSet& wantedTaps;
-    Tracer& tracer;
+    Tracer& tracer;  ///< bound to `scene`: for methods that trace samples of their own
+    /// What the frame's signals were made with. The keys (x, y, firstSample + s) name their random numbers: Tracer::shade()
+    /// with the key of an earlier sample and its surface point shades that sample again as things are now.
+    const FrameSampling& sampling;
     StageTimer& timer;
     std::stop_token stop;
 };

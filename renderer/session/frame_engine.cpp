@@ -208,6 +208,7 @@ bool FrameEngine::runModules(const FrameRequest& request, const Completed& next,
                              FrameOutput& frame, StageTimer& timer, std::stop_token stop) {
     frame.historyDropped = true;
     const std::map<std::string, TapSet> shown = shownTaps(next.document);
+    const FrameSampling asked = sampling(request, next, previousCamera);
     for (const std::string& name : next.instances) {
         Instance& current = running(name);
         TapSet wanted;
@@ -219,7 +220,7 @@ bool FrameEngine::runModules(const FrameRequest& request, const Completed& next,
 
         timer.setPrefix(name + ".");
         const FrameContext context{request.frame, *next.signals, *next.scene, next.camera, previousCamera,
-                                   changes,       wanted,        tracer_,     timer,       stop};
+                                   changes,       wanted,        tracer_,     asked,       timer,          stop};
         auto out = std::make_shared<Image>();
         const Timer run;
         if (!runModule(name, context, *out, frame)) return false;

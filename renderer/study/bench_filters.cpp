@@ -36,19 +36,18 @@ public:
         posed_ = poseScene(scene, {});
         camera_ = poseCamera(cameraAt(*scene, 0, 0), kFilterExtent);
         tracer_.bind(posed_);
-        FrameSampling sampling;
-        sampling.extent = kFilterExtent;
-        sampling.camera = sampling.previousCamera = camera_;
-        sampling.jitter = Jitter::PerFrame;
-        sampling.wanted = SignalSet::all();
-        if (!tracer_.sample(sampling, signals_, stop)) throwIfStopped(stop);
+        sampling_.extent = kFilterExtent;
+        sampling_.camera = sampling_.previousCamera = camera_;
+        sampling_.jitter = Jitter::PerFrame;
+        sampling_.wanted = SignalSet::all();
+        if (!tracer_.sample(sampling_, signals_, stop)) throwIfStopped(stop);
     }
 
     void run(Module& module, FrameNumber frame, StageTimer& timer, Image& out) {
         Changes changes;
         changes.cut = frame == 0;
         const TapSet none;
-        module.run({frame, signals_, *posed_, camera_, camera_, changes, none, tracer_, timer, {}}, out);
+        module.run({frame, signals_, *posed_, camera_, camera_, changes, none, tracer_, sampling_, timer, {}}, out);
     }
     const Signals& signals() const { return signals_; }
 
@@ -56,6 +55,7 @@ private:
     std::shared_ptr<const PosedScene> posed_;
     CameraPose camera_;
     Tracer tracer_;
+    FrameSampling sampling_;
     Signals signals_;
 };
 

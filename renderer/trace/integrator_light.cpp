@@ -36,6 +36,7 @@ void Integrator::sampleLight(PathBatch& batch, uint32_t index, const Surface& su
     if (vertex) {
         vertex->lightSampled = true;
         vertex->lightPosition = light.position;
+        vertex->lightInfinite = !std::isfinite(light.distance);
         vertex->light = light.light;
     }
     const Vec3 normal = side > 0 ? surface.geometricNormal : -surface.geometricNormal;

@@ -33,6 +33,7 @@ struct PathVertex {
     bool lightSampled = false;  ///< a light sample with a chance to contribute was taken
     bool lightVisible = false;
     Vec3 lightPosition{0};      ///< of the light sample; for infinite lights the direction
+    bool lightInfinite = false;
     int light = -1;             ///< which light was sampled, TracerLights' index; -1 none
     SurfacePoint blocker;       ///< valid if needs().blocker was asked for and something blocked
 

@@ -241,8 +241,8 @@ bool Tracer::tracePaths(std::span<const PathStart> starts, const PathSettings& s
 
 bool Tracer::shade(std::span<const SurfacePoint> points, std::span<const Vec3> wo, std::span<const RandomKey> keys,
                    const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
-                   std::span<PathObserver* const> observers, std::stop_token stop) {
-    assert(points.size() == wo.size() && points.size() == keys.size());
+                   std::span<PathObserver* const> observers, std::stop_token stop, std::span<const RayCone> cones) {
+    assert(points.size() == wo.size() && points.size() == keys.size() && (cones.empty() || cones.size() == points.size()));
     std::vector<PathStart> starts(points.size());
     parallelRanges(static_cast<int64_t>(starts.size()), 4096, [&](int64_t begin, int64_t end) {
         for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
@@ -250,6 +250,7 @@ bool Tracer::shade(std::span<const SurfacePoint> points, std::span<const Vec3> w
             starts[i].ray.time = points[i].time;
             if (points[i].valid()) starts[i].ray.origin = surfacePosition(impl_->scene.tables, points[i]);
             starts[i].key = keys[i];
+            if (!cones.empty()) starts[i].cone = cones[i];
             starts[i].slot = static_cast<uint32_t>(i);
         }
     });
@@ -314,6 +315,12 @@ void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked, std
             }
         },
         stop);
+}
+
+bool Tracer::has(const SurfacePoint& point) const {
+    const auto& instances = impl_->scene.tables.instances;
+    return point.valid() && point.instance < instances.size() &&
+           (instances[point.instance].body >= 0 || point.primitive < instances[point.instance].triangleCount);
 }
 
 Vec3 Tracer::position(const SurfacePoint& point) const {

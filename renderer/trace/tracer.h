@@ -77,16 +77,19 @@ public:
                     std::span<Vec3> radiance, std::span<PathObserver* const> observers, std::stop_token stop = {});
 
     /// Shades given surface points as seen along -wo[i] (unit, world, away from the surface), path continuing from
-    /// there: a path whose first vertex is given. Invalid points give 0.
+    /// there: a path whose first vertex is given. Invalid points give 0. `cones` (may be empty: points without extent) are
+    /// the footprints on arrival; with those of a camera ray and its key the result is that of the camera's path.
     bool shade(std::span<const SurfacePoint> points, std::span<const Vec3> wo, std::span<const RandomKey> keys,
                const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
-               std::span<PathObserver* const> observers, std::stop_token stop = {});
+               std::span<PathObserver* const> observers, std::stop_token stop = {}, std::span<const RayCone> cones = {});
 
     void closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::stop_token stop = {});
     /// blocked[i] = 1 if anything lies in (tmin, tmax). With `blockers` (may be empty) the nearest blocker is reported.
     void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked, std::span<SurfacePoint> blockers = {},
                   std::stop_token stop = {});
 
+    /// Is this a point of the scene that is bound? What was kept from an earlier scene may not be.
+    bool has(const SurfacePoint& point) const;
     /// World position of a surface point, and of the same point in the previous frame.
     Vec3 position(const SurfacePoint& point) const;
     Vec3 previousPosition(const SurfacePoint& point) const;

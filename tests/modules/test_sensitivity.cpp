@@ -59,19 +59,23 @@ void setNumbers(Module& module, Others others) {
     }
 }
 
-/// Frames with a still camera, two moves and a still one again, and 2 samples a pixel so that variances are there.
+/// Frames with a still camera, two moves and a still one again, lights that grow dim on the way, and 2 samples a pixel so
+/// that variances are there.
 class Sensitivity : public testing::TestWithParam<const ModuleEntry*> {
 protected:
     static void SetUpTestSuite() {
         harness_ = std::make_unique<ModuleHarness>(kExtent, 2);
-        for (FrameNumber frame = 0; frame < kFrames; ++frame)
+        for (FrameNumber frame = 0; frame < kFrames; ++frame) {
+            harness_->dimLights(isDim(frame));
             frames_.push_back(std::make_shared<Signals>(harness_->trace(frame, shift(frame), shift(frame - 1))));
+        }
     }
     static void TearDownTestSuite() {
         harness_.reset();
         frames_.clear();
     }
 
+    static bool isDim(FrameNumber frame) { return frame >= 4; }
     static float shift(FrameNumber frame) { return frame < 3 ? 0.0f : frame == 3 ? 0.03f : 0.07f; }
 
     /// Everything that the module shows over the frames; `disturbed` replaces the signals of the last but one.
@@ -81,7 +85,8 @@ protected:
         std::string digests;
         for (FrameNumber frame = 0; frame < kFrames; ++frame) {
             Image out;
-            const Changes changes{.cut = frame == 0, .camera = shift(frame) != shift(frame - 1)};
+            const Changes changes{.cut = frame == 0, .camera = shift(frame) != shift(frame - 1), .lights = isDim(frame) != isDim(frame - 1)};
+            harness_->dimLights(isDim(frame));
             const bool replaced = disturbed && frame == kFrames - 2;
             EXPECT_EQ(harness_->run(module, {frame, changes, shift(frame), false},
                                     replaced ? *disturbed : *frames_[static_cast<size_t>(frame)], out),

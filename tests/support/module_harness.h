@@ -29,13 +29,8 @@ public:
     /// Every signal of frame `number`; the camera stands `shift` metres to the right of the scene's own, and stood
     /// `previousShift` to the right of it a frame earlier.
     Signals trace(FrameNumber number, float shift, float previousShift, Jitter jitter = Jitter::PerPixel) {
-        FrameSampling sampling;
-        sampling.extent = extent_;
-        sampling.camera = camera(shift);
+        FrameSampling sampling = samplingOf(number, shift);
         sampling.previousCamera = camera(previousShift);
-        sampling.frame = static_cast<uint32_t>(number);
-        sampling.samplesPerPixel = spp_;
-        sampling.firstSample = static_cast<uint64_t>(number) * static_cast<uint64_t>(spp_);
         sampling.jitter = jitter;
         sampling.wanted = SignalSet::all();
         Signals signals;
@@ -46,6 +41,16 @@ public:
     /// The same without motion.
     Signals trace(FrameNumber number, float shift = 0, Jitter jitter = Jitter::PerPixel) {
         return trace(number, shift, shift, jitter);
+    }
+
+    FrameSampling samplingOf(FrameNumber number, float shift) const {
+        FrameSampling sampling;
+        sampling.extent = extent_;
+        sampling.camera = sampling.previousCamera = camera(shift);
+        sampling.frame = static_cast<uint32_t>(number);
+        sampling.samplesPerPixel = spp_;
+        sampling.firstSample = static_cast<uint64_t>(number) * static_cast<uint64_t>(spp_);
+        return sampling;
     }
 
     CameraPose camera(float shift = 0) const {
@@ -68,8 +73,9 @@ public:
         std::stop_source stop;
         if (step.stopped) stop.request_stop();
         const CameraPose pose = camera(step.shift);
-        return module.run({step.frame, signals, *posed_, pose, pose, step.changes, wanted, tracer_, timer, stop.get_token()},
-                          out);
+        const FrameSampling sampling = samplingOf(step.frame, step.shift);
+        return module.run(
+            {step.frame, signals, *posed_, pose, pose, step.changes, wanted, tracer_, sampling, timer, stop.get_token()}, out);
     }
     /// The image of a completed run; frame 0 is a cut.
     Image image(Module& module, FrameNumber frame, const Signals& signals, Changes changes = {}) {
@@ -79,13 +85,25 @@ public:
         return out;
     }
 
+    /// From now on the lights have a third of their power, or all of it again.
+    void dimLights(bool dimmed) {
+        if (dimmed && !dimmed_) {
+            auto scene = std::make_shared<Scene>(*scene_);
+            for (Light& light : scene->lights) light.power /= 3;
+            dimmed_ = poseScene(scene, {});
+        }
+        if (!bright_) bright_ = posed_;
+        posed_ = dimmed ? dimmed_ : bright_;
+        tracer_.bind(posed_);
+    }
+
     Extent2 extent() const { return extent_; }
 
 private:
     Extent2 extent_;
     int spp_;
     std::shared_ptr<const Scene> scene_;
-    std::shared_ptr<const PosedScene> posed_;
+    std::shared_ptr<const PosedScene> posed_, bright_, dimmed_;
     Tracer tracer_;
 };
 

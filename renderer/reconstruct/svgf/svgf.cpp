@@ -7,7 +7,17 @@
 
 namespace lumi {
 
-SvgfModule::SvgfModule() : ScreenFilter(svgfTaps(kMaxLevels), true) {}
+namespace {
+
+std::vector<Tap> joined(std::vector<Tap> taps, const std::vector<Tap>& own) {
+    taps.insert(taps.end(), own.begin(), own.end());
+    return taps;
+}
+
+}  // namespace
+
+SvgfModule::SvgfModule() : SvgfModule(std::vector<Tap>{}) {}
+SvgfModule::SvgfModule(const std::vector<Tap>& own) : ScreenFilter(joined(svgfTaps(kMaxLevels), own), true) {}
 
 SignalSet SvgfModule::reads() const { return commonSignals() | reprojectionSignals() | surfaceGuideSignals(); }
 
@@ -32,9 +42,11 @@ bool SvgfModule::filter(const FrameContext& context, const Step& step, Image& ou
 }
 
 bool SvgfModule::integrate(const FrameContext& context, const Step& step) {
+    HistoryLoss loss;
+    if (!estimateLoss(context, loss)) return false;
     const auto measured = context.timer.measure("temporal filter");
     if (!filterTemporally(context.signals, parameters_.temporal, {&frame().direct, &frame().indirect}, step.previous, step.next,
-                          captured().target("reprojection"), context.stop))
+                          captured().target("reprojection"), context.stop, loss))
         return false;
     keepIntegrated(captured(), step.next);
     for (size_t c = 0; c < kComponents; ++c) {

@@ -31,6 +31,15 @@ public:
     static constexpr int kComponents = 2;  ///< direct, indirect
     static constexpr int kMaxLevels = 7;
 
+protected:
+    /// Of a relative with buffers of its own beside SVGF's.
+    explicit SvgfModule(const std::vector<Tap>& own);
+    /// How much of its history each component is to give up (filter/temporal.h); left empty, as here: none. Called once a
+    /// run, before the temporal filter. Returns false if stopped.
+    virtual bool estimateLoss(const FrameContext&, HistoryLoss&) { return true; }
+    /// Default of the alphas of colour and moments.
+    void useAlpha(float alpha) { parameters_.temporal.colourAlpha = parameters_.temporal.momentsAlpha = alpha; }
+
 private:
     struct Parameters {
         TemporalSettings temporal;

@@ -1,0 +1,132 @@
+#include "reconstruct/aaf/aaf.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "reconstruct/aaf/occlusion.h"
+
+namespace lumi {
+namespace {
+
+std::vector<Tap> declareTaps() {
+    std::vector<Tap> taps = temporalTaps();
+    taps.push_back({.name = "occlusion", .channels = "Y", .rangeHigh = 2, .help = "Least d1/d2 - 1 of the window's blocked light samples, accumulated; 0 where none was blocked"});
+    taps.push_back({.name = "filterWidth", .channels = "Y", .unit = "m", .rangeHigh = 0.5f, .help = "beta, the Gaussian's standard deviation on the surface"});
+    taps.push_back({.name = "integratedDirect", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "Direct illumination before the filter"});
+    taps.push_back({.name = "filteredDirect", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "Direct illumination after it"});
+    return taps;
+}
+
+}  // namespace
+
+AafModule::AafModule() : ScreenFilter(declareTaps(), false) {}
+
+SignalSet AafModule::reads() const {
+    return commonSignals() | occlusionSignals() | (temporal_ ? reprojectionSignals() : SignalSet{});
+}
+
+void AafModule::describe(ParameterVisitor& v) {
+    v.toggle("temporal", temporal_,
+             {.label = "Temporal accumulation", .help = "Integrate light and occlusion distances over time ([Schied17, sec. 5.1])"});
+    v.when(temporal_, [&] { temporalSettings_.describe(v, false); });
+    v.integer("window-radius", windowRadius_,
+              {.label = "Window radius", .min = 0, .max = 8, .unit = "px", .help = "Of the window that d2max is gathered in"});
+    v.number("overlap", overlap_,
+             {.label = "k", .min = 0.5, .max = 10, .help = "How many standard deviations of the filter the sharpest penumbra's own is wide"});
+    v.integer("max-radius", maxRadius_, {.label = "Largest radius", .min = 1, .max = 64, .unit = "px", .help = "Of the filter on the screen"});
+    describeAntialiasing(v);
+}
+
+bool AafModule::filter(const FrameContext& context, const Step& step, Image& out) {
+    {
+        const auto measured = context.timer.measure("occlusion");
+        if (!measureOcclusion(context, measured_)) return false;
+        gatherOcclusion(context.signals, windowRadius_, measured_, occlusion_);
+    }
+    if (!integrate(context, step)) return false;
+    const auto measured = context.timer.measure("axis-aligned filter");
+    chooseWidths();
+    blur(context.signals, context.camera, true, direct_, half_);
+    if (context.stop.stop_requested()) return false;
+    blur(context.signals, context.camera, false, half_, filtered_);
+    captured().keep("filteredDirect", filtered_);
+    remodulate(frame(), filtered_, &indirect_, out);
+    return !context.stop.stop_requested();
+}
+
+bool AafModule::integrate(const FrameContext& context, const Step& step) {
+    const auto measured = context.timer.measure("temporal filter");
+    direct_ = frame().direct;
+    indirect_ = frame().indirect;
+    if (!temporal_) {
+        step.next = {};  // a later frame starts its history anew
+        for (const char* tap : {"reprojection", "historyLength"})
+            if (Image* empty = captured().target(tap)) empty->reset(extent(), 1);
+    } else {
+        if (!filterTemporally(context.signals, temporalSettings_, {&frame().direct, &frame().indirect, &occlusion_}, step.previous,
+                              step.next, captured().target("reprojection"), context.stop))
+            return false;
+        captured().keep("historyLength", step.next.length);
+        direct_ = step.next.components[0].colour;
+        indirect_ = step.next.components[1].colour;
+        occlusion_ = step.next.components[2].colour;
+    }
+    captured().keep("integratedDirect", direct_);
+    return true;
+}
+
+/// beta of each pixel, 0 where nothing was blocked.
+void AafModule::chooseWidths() {
+    if (width_.extent() != extent()) width_.reset(extent(), 1);
+    Image* shown = captured().target("occlusion");
+    if (shown) shown->reset(extent(), 1);
+    for (int64_t i = 0; i < extent().area(); ++i) {
+        const float found = occlusion_.plane(1).data[i];
+        const float slope = found > 1e-3f ? occlusion_.plane(0).data[i] / found : 0;  // mean over the frames that had one
+        width_.data()[i] = occlusion_.plane(2).data[i] * slope / overlap_;
+        if (shown) shown->data()[i] = slope;
+    }
+    captured().keep("filterWidth", width_);
+}
+
+void AafModule::blur(const Signals& signals, const CameraPose& camera, bool alongRows, const Image& in, Image& out) const {
+    if (out.extent() != extent()) out.reset(extent(), 3);
+    const Image &position = signals[Signal::Position], &normal = signals[Signal::Normal], &inverseDepth = signals[Signal::InverseDepth];
+    const IdImage& object = signals.ids(Signal::ObjectId);
+    parallelFor(extent().height, [&](int64_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < extent().width; ++x) {
+            const float beta = width_.at(0, x, y), z = inverseDepth.at(0, x, y);
+            float shift[3] = {0, 0, 0}, weights = 1;
+            const bool surface = beta > 0 && z > 0 && object.at(0, x, y) != 0;
+            // A footprint of a pixel that faces the camera; slanted ones reach their weights' end sooner.
+            const float pixels = surface ? std::max(1.0f, 2 * beta * z / camera.pixelSize()) : 0;
+            const int radius = static_cast<int>(std::min(pixels, static_cast<float>(maxRadius_)));
+            for (int k = -radius; k <= radius; ++k) {
+                const int i = alongRows ? x + k : x, j = alongRows ? y : y + k;
+                if (k == 0 || i < 0 || j < 0 || i >= extent().width || j >= extent().height) continue;
+                if (object.at(0, i, j) != object.at(0, x, y)) continue;
+                float distance = 0, cosine = 0;
+                for (int c = 0; c < 3; ++c) {
+                    const float d = position.at(c, i, j) - position.at(c, x, y);
+                    distance += d * d;
+                    cosine += normal.at(c, i, j) * normal.at(c, x, y);
+                }
+                const float w = cosine > 0.9f ? std::exp(-distance / (2 * beta * beta)) : 0;
+                if (!(w > 0)) continue;
+                weights += w;
+                for (int c = 0; c < 3; ++c) shift[c] += w * (in.at(c, i, j) - in.at(c, x, y));
+            }
+            for (int c = 0; c < 3; ++c) out.at(c, x, y) = in.at(c, x, y) + shift[c] / weights;
+        }
+    });
+}
+
+size_t AafModule::byteCount() const {
+    size_t sum = ScreenFilter::byteCount();
+    for (const Image* image : {&measured_, &occlusion_, &width_, &direct_, &indirect_, &half_, &filtered_}) sum += image->bytes();
+    return sum;
+}
+
+}  // namespace lumi

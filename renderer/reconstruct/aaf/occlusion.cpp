@@ -1,0 +1,132 @@
+#include "reconstruct/aaf/occlusion.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+
+#include "base/parallel.h"
+#include "trace/path_lighting.h"
+#include "trace/tracer.h"
+
+namespace lumi {
+namespace {
+
+constexpr int kBand = 64;  ///< rows whose shadow rays are sent together
+
+/// Positions that one light was sampled at.
+struct LightSpread {
+    double count = 0;
+    glm::dvec3 sum{0}, squares{0};
+    void add(const Vec3& position) {
+        const glm::dvec3 p(position);
+        count += 1;
+        sum += p;
+        squares += p * p;
+    }
+    /// Along one of its two dimensions.
+    float deviation() const {
+        const glm::dvec3 mean = sum / count, variance = squares / count - mean * mean;
+        return static_cast<float>(std::sqrt(std::max(0.5 * (variance.x + variance.y + variance.z), 0.0)));
+    }
+};
+
+struct Pixels {
+    std::vector<SurfacePoint> points;
+    std::vector<Vec3> wo;
+    std::vector<RandomKey> keys;
+    std::vector<RayCone> cones;
+};
+
+Pixels pixelsOf(const FrameContext& context, int top, int bottom) {
+    const IdImage& surface = context.signals.ids(Signal::Surface);
+    const int width = context.signals.extent().width;
+    const uint64_t first = context.sampling.firstSample;
+    const Vec2 jitter = context.sampling.jitter == Jitter::PerFrame ? frameJitter(first) : Vec2(0);
+    Pixels pixels;
+    for (int y = top; y < bottom; ++y)
+        for (int x = 0; x < width; ++x) {
+            SurfacePoint point{surface.at(0, x, y), surface.at(1, x, y),
+                               {std::bit_cast<float>(surface.at(2, x, y)), std::bit_cast<float>(surface.at(3, x, y))},
+                               context.sampling.timeOf(x, y, first)};
+            if (!context.tracer.has(point)) point = {};
+            const PathStart start = cameraStart(context.camera, Vec2(x, y) + Vec2(0.5f) + jitter, Vec2(0.5f), point.time);
+            const float distance = point.valid() ? glm::length(context.tracer.position(point) - start.ray.origin) : 0;
+            pixels.points.push_back(point);
+            pixels.wo.push_back(-start.ray.direction);
+            pixels.keys.push_back({static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(first)});
+            pixels.cones.push_back({start.cone.width + start.cone.spread * distance, start.cone.spread});
+        }
+    return pixels;
+}
+
+/// d1/d2 - 1, or the blocker's distance from the surface where the light is infinitely far.
+float slopeOf(const Tracer& tracer, const ShadowSample& sample, const Vec3& position) {
+    if (!tracer.has(sample.blocker)) return 0;
+    const Vec3 blocker = tracer.position(sample.blocker);
+    if (sample.infinite) return glm::length(blocker - position);
+    const float d1 = glm::length(sample.lightPosition - position), d2 = glm::length(sample.lightPosition - blocker);
+    return std::max(d1 / std::max(d2, 1e-6f) - 1, 0.0f);
+}
+
+}  // namespace
+
+bool measureOcclusion(const FrameContext& context, Image& out) {
+    const Extent2 extent = context.signals.extent();
+    if (out.extent() != extent) out.reset(extent, 3);
+    out.fill(0);
+    PathSettings settings = context.sampling.path;
+    settings.maxDepth = 1;
+    std::map<int, LightSpread> spreads;
+    IdImage lights(extent, 1);  // 1 + entry
+    for (int top = 0; top < extent.height; top += kBand) {
+        const int bottom = std::min(top + kBand, extent.height);
+        const Pixels pixels = pixelsOf(context, top, bottom);
+        ShadowObserver shadows(pixels.points.size());
+        PathObserver* const observers[] = {&shadows};
+        if (!context.tracer.shade(pixels.points, pixels.wo, pixels.keys, settings, context.sampling.seed, {}, observers, context.stop, pixels.cones))
+            return false;
+        for (size_t i = 0; i < pixels.points.size(); ++i) {
+            const ShadowSample& sample = shadows[i];
+            if (sample.light < 0) continue;
+            const int x = static_cast<int>(i) % extent.width, y = top + static_cast<int>(i) / extent.width;
+            lights.at(0, x, y) = static_cast<uint32_t>(sample.light) + 1;
+            spreads[sample.light].add(sample.lightPosition);
+            if (!sample.blocked) continue;
+            out.at(0, x, y) = slopeOf(context.tracer, sample, context.tracer.position(pixels.points[i]));
+            out.at(1, x, y) = 1;
+        }
+    }
+    std::map<uint32_t, float> deviations;
+    for (const auto& [light, spread] : spreads) deviations[static_cast<uint32_t>(light) + 1] = spread.deviation();
+    for (int64_t i = 0; i < extent.area(); ++i)
+        if (const auto found = deviations.find(lights.data()[i]); found != deviations.end()) out.plane(2).data[i] = found->second;
+    return true;
+}
+
+void gatherOcclusion(const Signals& signals, int radius, const Image& in, Image& out) {
+    const Extent2 extent = in.extent();
+    if (out.extent() != extent) out.reset(extent, 3);
+    const Image& normal = signals[Signal::Normal];
+    parallelFor(extent.height, [&](int64_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < extent.width; ++x) {
+            float least = kInfinity, size = in.at(2, x, y);
+            for (int j = std::max(y - radius, 0); j <= std::min(y + radius, extent.height - 1); ++j)
+                for (int i = std::max(x - radius, 0); i <= std::min(x + radius, extent.width - 1); ++i) {
+                    if (in.at(1, i, j) == 0 || !(in.at(0, i, j) < least)) continue;
+                    float cosine = 0;
+                    for (int c = 0; c < 3; ++c) cosine += normal.at(c, x, y) * normal.at(c, i, j);
+                    if (!(cosine > 0.9f)) continue;
+                    least = in.at(0, i, j);
+                    size = in.at(2, i, j);
+                }
+            const bool found = least < kInfinity;
+            out.at(0, x, y) = found ? least : 0;
+            out.at(1, x, y) = found ? 1 : 0;
+            out.at(2, x, y) = size;
+        }
+    });
+}
+
+}  // namespace lumi

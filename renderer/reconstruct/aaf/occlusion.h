@@ -1,0 +1,22 @@
+#pragma once
+#include "reconstruct/module.h"
+
+namespace lumi {
+
+/// What the light samples of a frame met, a pixel: R: d1/d2 - 1 of the blocked ones, d1 being the light's distance from the
+/// surface and d2 from the blocker (for infinite lights the blocker's distance in metres), G: 1 where blocked, B: the
+/// standard deviation of the light (metres; for infinite lights an angle).
+///
+/// It sends the frame's own shadow rays, with the same random numbers, once more and asks what they hit. Returns false if
+/// stopped.
+bool measureOcclusion(const FrameContext& context, Image& out);
+
+/// Least R among the blocked pixels of the window of `radius` that see a surface alike, 1 in G where there is one, and B of
+/// the pixel itself or else of the window: the greatest d2 has the sharpest shadow. `in` and `out` as above.
+void gatherOcclusion(const Signals& signals, int radius, const Image& in, Image& out);
+
+inline SignalSet occlusionSignals() {
+    return {Signal::Surface, Signal::ObjectId, Signal::Position, Signal::Normal, Signal::InverseDepth};
+}
+
+}  // namespace lumi
