@@ -85,11 +85,11 @@ public:
         return out;
     }
 
-    /// From now on the lights have a third of their power, or all of it again.
-    void dimLights(bool dimmed) {
+    /// From now on the lights have a part of their power, or all of it again. One harness knows one part.
+    void dimLights(bool dimmed, float part = 1.0f / 3) {
         if (dimmed && !dimmed_) {
             auto scene = std::make_shared<Scene>(*scene_);
-            for (Light& light : scene->lights) light.power /= 3;
+            for (Light& light : scene->lights) light.power *= part;
             dimmed_ = poseScene(scene, {});
         }
         if (!bright_) bright_ = posed_;

@@ -1,0 +1,162 @@
+// Input that breaks filters, on every module of the catalogue: numbers that are none, no light, nothing but sky, another
+// size in mid-sequence, parameters at their ends. And what must not be changed: light without noise.
+#include <limits>
+
+#include "math/hash.h"
+#include "support/module_harness.h"
+
+namespace lumi::test {
+namespace {
+
+class Degenerate : public testing::TestWithParam<const ModuleEntry*> {
+protected:
+    std::unique_ptr<Module> make(Extent2 extent) const {
+        auto module = GetParam()->make();
+        module->resize(extent);
+        return module;
+    }
+    bool isOneOf(std::initializer_list<const char*> ids) const {
+        return std::any_of(ids.begin(), ids.end(), [&](const char* id) { return std::string(id) == GetParam()->id; });
+    }
+};
+
+TEST_P(Degenerate, ADroppedPixelIsCountedAndShownAndHarmsNoOther) {
+    const Extent2 extent{31, 19};
+    ModuleHarness harness(extent);
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity}) {
+        const auto module = make(extent);
+        for (FrameNumber frame = 0; frame < 6; ++frame) {
+            Signals signals = harness.trace(frame);
+            if (frame == 2)
+                for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::Indirect, Signal::Emission}) signals[signal].at(1, 12, 7) = bad;
+            const Image image = harness.image(*module, frame, signals);
+            EXPECT_LE(countNonFinite(image), isOneOf({"none", "accumulate"}) ? 1 : 0) << "frame " << frame;
+            const Image& dropped = module->tap("dropped");
+            if (dropped.empty()) continue;
+            double count = 0;
+            for (size_t i = 0; i < dropped.size(); ++i) count += dropped.data()[i];
+            EXPECT_EQ(count, frame == 2 ? 1 : 0) << "frame " << frame;
+            EXPECT_EQ(dropped.at(0, 12, 7), frame == 2 ? 1 : 0);
+        }
+    }
+}
+
+TEST_P(Degenerate, WithoutLightItIsBlack) {
+    const Extent2 extent{23, 17};
+    ModuleHarness harness(extent);
+    harness.dimLights(true, 0);
+    const auto module = make(extent);
+    for (FrameNumber frame = 0; frame < 6; ++frame) {
+        const Image image = harness.image(*module, frame, harness.trace(frame));
+        for (size_t i = 0; i < image.size(); ++i) ASSERT_EQ(image.data()[i], 0) << "frame " << frame;
+    }
+}
+
+/// Nothing but sky, of one colour a column.
+Signals sky(Extent2 extent) {
+    Signals signals = constantSignals(extent, 1, 0);
+    for (const Signal signal : {Signal::Normal, Signal::GeometricNormal, Signal::ObjectNormal, Signal::InverseDepth, Signal::Direct,
+                                Signal::DirectDiffuse})
+        signals[signal].fill(0);
+    signals[Signal::Depth].fill(kInfinity);
+    for (const Signal id : {Signal::ObjectId, Signal::MaterialId}) signals.ids(id).fill(0);
+    for (int64_t i = 0; i < extent.area(); ++i) {
+        signals.ids(Signal::Surface).plane(0).data[i] = kNoInstance;
+        for (int c = 0; c < 3; ++c) {
+            const float value = 0.1f * static_cast<float>(1 + i % extent.width);
+            signals[Signal::Emission].plane(c).data[i] = signals[Signal::Noisy].plane(c).data[i] = value;
+            signals.noisySum().plane(c).data[i] = value;
+        }
+    }
+    return signals;
+}
+
+TEST_P(Degenerate, SkyPassesAround) {
+    const Extent2 extent{13, 7};
+    ModuleHarness harness(extent);
+    const auto module = make(extent);
+    const auto describe = [&](ParameterVisitor& v) { module->describe(v); };
+    for (const ParameterInfo& info : listParameters(describe))
+        if (info.id == "taa") setParameter(describe, "taa", false);  // it blurs by design
+        else if (info.id == "clip") setParameter(describe, "clip", false);
+    const Signals signals = sky(extent);
+    for (FrameNumber frame = 0; frame < 4; ++frame) {
+        const Image image = harness.image(*module, frame, signals);
+        for (int x = 0; x < extent.width; ++x) ASSERT_NEAR(image.at(1, x, 3), 0.1f * static_cast<float>(1 + x), 1e-5f) << "frame " << frame;
+    }
+}
+
+TEST_P(Degenerate, AnotherSizeInMidSequenceIsAFreshStart) {
+    ModuleHarness large({33, 21}), small({14, 25});
+    const auto resized = make({33, 21}), fresh = make({14, 25});
+    for (FrameNumber frame = 0; frame < 3; ++frame) large.image(*resized, frame, large.trace(frame));
+    resized->resize({14, 25});
+    for (FrameNumber frame = 3; frame < 6; ++frame) {
+        const Signals signals = small.trace(frame);
+        const Changes changes{.cut = frame == 3};
+        const Image a = small.image(*resized, frame, signals, changes), b = small.image(*fresh, frame, signals, changes);
+        ASSERT_EQ(digestOf(a, *resized), digestOf(b, *fresh)) << "frame " << frame;
+    }
+}
+
+TEST_P(Degenerate, EveryParameterAtEitherEndGivesNumbers) {
+    const Extent2 extent{19, 13};
+    ModuleHarness harness(extent);
+    std::vector<std::shared_ptr<Signals>> frames;
+    const auto shift = [](FrameNumber frame) { return 0.04f * static_cast<float>(frame); };
+    for (FrameNumber frame = 0; frame < 4; ++frame)
+        frames.push_back(std::make_shared<Signals>(harness.trace(frame, shift(frame), frame > 0 ? shift(frame - 1) : 0)));
+    const auto sample = GetParam()->make();
+    for (const ParameterInfo& info : listParameters([&](ParameterVisitor& v) { sample->describe(v); })) {
+        std::vector<ParameterValue> ends;
+        if (info.type == ParameterType::Number) ends = {static_cast<float>(info.min), static_cast<float>(info.max)};
+        if (info.type == ParameterType::Integer) ends = {static_cast<int>(info.min), static_cast<int>(std::min(info.max, 1e6))};
+        for (const ParameterValue& end : ends) {
+            const auto module = make(extent);
+            const auto describe = [&](ParameterVisitor& v) { module->describe(v); };
+            for (const ParameterInfo& other : listParameters(describe))
+                if (other.type == ParameterType::Toggle) setParameter(describe, other.id, true);
+            setParameter(describe, info.id, end);
+            for (FrameNumber frame = 0; frame < 4; ++frame) {
+                Image image;
+                const Changes changes{.cut = frame == 0, .camera = frame > 0};
+                ASSERT_EQ(harness.run(*module, {frame, changes, shift(frame), false}, *frames[static_cast<size_t>(frame)], image), RunResult::Completed);
+                ASSERT_EQ(countNonFinite(image), 0) << info.id << " frame " << frame;
+            }
+        }
+    }
+}
+
+// "A static converged input passes": no noise, all history valid.
+TEST_P(Degenerate, LightWithoutNoisePasses) {
+    if (isOneOf({"eaw", "sbf", "taa"})) GTEST_SKIP() << "blurs whatever it is given";
+    const Extent2 extent{48, 32};
+    ModuleHarness harness(extent);
+    const auto module = make(extent);
+    const auto describe = [&](ParameterVisitor& v) { module->describe(v); };
+    for (const ParameterInfo& info : listParameters(describe)) {
+        if (info.id == "taa") setParameter(describe, "taa", false);
+        if (info.id == "gradient-strength") setParameter(describe, info.id, 0.0f);  // the light is not that of the scene
+    }
+    Signals signals = constantSignals(extent, 1, 0);
+    for (int y = 0; y < extent.height; ++y)
+        for (int x = 0; x < extent.width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const float value = 0.5f + unitFloat(hashCombine(static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(c)));
+                for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::DirectDiffuse}) signals[signal].at(c, x, y) = value;
+                signals.noisySum().at(c, x, y) = value;
+            }
+    const auto luminanceOf = [](const Image& image, int x, int y) { return luminance(Vec3(image.at(0, x, y), image.at(1, x, y), image.at(2, x, y))); };
+    Image image;
+    for (FrameNumber frame = 0; frame < 120; ++frame) image = harness.image(*module, frame, signals);
+    for (int y = 0; y < extent.height; ++y)
+        for (int x = 0; x < extent.width; ++x) {
+            const float expected = luminanceOf(signals[Signal::Direct], x, y);
+            ASSERT_NEAR(luminanceOf(image, x, y), expected, 1e-3f * expected) << x << ' ' << y;
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Degenerate, testing::ValuesIn(catalogueEntries()), testName);
+
+}  // namespace
+}  // namespace lumi::test
