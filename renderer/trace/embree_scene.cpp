@@ -26,6 +26,10 @@ const char* deviceConfig() {
     }
 }
 
+/// Triangles up to which shadow rays go in packets: box scenes of a few dozen gain a third to two thirds by them, those of
+/// 100,000 and more lose up to a fifth.
+constexpr size_t kSmallScene = 10000;
+
 }  // namespace
 
 EmbreeScene::EmbreeScene() : monitor_(std::make_unique<Monitor>()) {
@@ -182,6 +186,10 @@ void EmbreeScene::rebuild(const PosedScene& posed, std::vector<Plan> plans) {
         rtcAttachGeometryByID(top_, attachments_[i].geometry, i);
     }
     rtcCommitScene(top_);
+    size_t triangles = 0;
+    for (const Plan& plan : plans_)
+        if (plan.mesh) triangles += plan.mesh->triangles.size();
+    shadowPacketWidth_ = triangles <= kSmallScene ? packetWidth_ : 1;
     throwIfFailed("building the scene for ray tracing");
 }
 

@@ -39,6 +39,9 @@ public:
     const Vec3* worldPositions(uint32_t instance) const;
     /// Widest packet the device traces natively: 16, 8, 4 or 1.
     int packetWidth() const { return packetWidth_; }
+    /// In what packets shadow rays are fastest: the widest in small scenes, whose few nodes most rays meet alike, else
+    /// single rays, even of neighbouring pixels.
+    int shadowPacketWidth() const { return shadowPacketWidth_; }
     size_t byteCount() const;
 
     /// Every ray traced from now on goes to `recorder` too; null: to none.
@@ -68,7 +71,7 @@ private:
 
     RTCDevice device_ = nullptr;
     RTCScene top_ = nullptr;
-    int packetWidth_ = 1;
+    int packetWidth_ = 1, shadowPacketWidth_ = 1;
     const PosedScene* posed_ = nullptr;
     RayRecorder* recorder_ = nullptr;
     std::unique_ptr<Monitor> monitor_;

@@ -32,12 +32,12 @@ struct Packet<16> {
     static constexpr auto occluded = &rtcOccluded16;
 };
 
-RTCIntersectContext makeContext() {
+/// `coherent` lets Embree follow a packet by its frustum, which makes camera rays two to three times as fast. Never for
+/// occlusion: Embree 3.13.5 does not return then for some packets of shadow rays towards a sky over robust instances.
+RTCIntersectContext makeContext(bool coherent) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    // Never RTC_INTERSECT_CONTEXT_FLAG_COHERENT: Embree 3.13.5's frustum traversal of 16-wide occlusion packets does
-    // not return for some packets of shadow rays towards a sky over robust instances.
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     return context;
 }
 
@@ -110,8 +110,9 @@ void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std
                    Coherence coherence) {
     assert(hits.size() >= rays.size());
     if (RayRecorder* recorder = scene.recorder()) recorder->add(false, coherence, rays);
-    RTCIntersectContext context = makeContext();
-    const int width = coherence == Coherence::Coherent ? scene.packetWidth() : 1;
+    const bool coherent = coherence == Coherence::Coherent;
+    RTCIntersectContext context = makeContext(coherent);
+    const int width = coherent ? scene.packetWidth() : 1;
     if (width == 16) return intersectPackets<16>(scene.handle(), rays, hits, context);
     if (width == 8) return intersectPackets<8>(scene.handle(), rays, hits, context);
     if (width == 4) return intersectPackets<4>(scene.handle(), rays, hits, context);
@@ -131,8 +132,8 @@ void occludedRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std:
                   Coherence coherence) {
     assert(blocked.size() >= rays.size());
     if (RayRecorder* recorder = scene.recorder()) recorder->add(true, coherence, rays);
-    RTCIntersectContext context = makeContext();
-    const int width = coherence == Coherence::Coherent ? scene.packetWidth() : 1;
+    RTCIntersectContext context = makeContext(false);
+    const int width = scene.shadowPacketWidth();
     if (width == 16) return occludedPackets<16>(scene.handle(), rays, blocked, context);
     if (width == 8) return occludedPackets<8>(scene.handle(), rays, blocked, context);
     if (width == 4) return occludedPackets<4>(scene.handle(), rays, blocked, context);

@@ -24,14 +24,14 @@ struct RawHit {
     bool valid() const { return instance != kNoInstance; }
 };
 
-/// How rays of a batch relate: `Coherent` ones go in the widest packets, `Incoherent` ones as singles.
+/// How rays of a batch relate: `Coherent` ones start alike and go alike, as camera rays do.
 enum class Coherence { Coherent, Incoherent };
 
-/// Nearest hits of rays[0, n).
+/// Nearest hits of rays[0, n): coherent ones in the widest packets, others as singles.
 void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits,
                    Coherence coherence);
 
-/// blocked[i] = 1 if anything lies in (tmin, tmax) of ray i, else 0.
+/// blocked[i] = 1 if anything lies in (tmin, tmax) of ray i, else 0. In the scene's shadowPacketWidth().
 void occludedRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked,
                   Coherence coherence);
 

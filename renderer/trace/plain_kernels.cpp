@@ -105,6 +105,15 @@ void place(Lanes& lanes) {
     }
 }
 
+/// Direction across `normal` in which u grows and v stays, any length; 0 where there is none. `c1` and `c2` are the differences
+/// of v along the triangle's edges. With those of u instead, v falls and u stays, as along glTF's bitangent.
+LUMI_LANE Lane3 uvGradient(const Lanes& lanes, int i, Lane3 normal, float c2, float c1) {
+    const float determinant = lanes.edge1U[i] * lanes.edge2V[i] - lanes.edge1V[i] * lanes.edge2U[i];
+    const float sign = determinant > 0 ? 1.0f : determinant < 0 ? -1.0f : 0.0f;
+    const Lane3 along = (at(lanes.edge1, i) * c2 - at(lanes.edge2, i) * c1) * sign;
+    return along - normal * dot(normal, along);
+}
+
 void bend(Lanes& lanes) {
     // Height above the surface, in half precision, that the reflection off a bent normal keeps.
     constexpr float kLeastHeight = 1e-3f;
@@ -112,7 +121,12 @@ void bend(Lanes& lanes) {
 #pragma GCC ivdep
     for (int i = 0; i < count; ++i) {
         // The normal map's.
-        const Lane3 smooth = at(lanes.smoothNormal, i), tangent = at(lanes.tangent, i), bitangent = at(lanes.bitangent, i);
+        const Lane3 smooth = at(lanes.smoothNormal, i);
+        const bool derived = lanes.derived[i] > 0;
+        const Lane3 tangent =
+            choose(derived, uvGradient(lanes, i, smooth, lanes.edge2V[i], lanes.edge1V[i]), at(lanes.tangent, i));
+        const Lane3 bitangent =
+            choose(derived, uvGradient(lanes, i, smooth, lanes.edge2U[i], lanes.edge1U[i]), at(lanes.bitangent, i));
         const float lengthT = std::sqrt(dot(tangent, tangent)), lengthB = std::sqrt(dot(bitangent, bitangent));
         const bool mapped = (lengthT > 0) & (lengthB > 0) & finite(lengthT + lengthB);
         const Lane3 texel = at(lanes.mapTexel, i);

@@ -39,7 +39,8 @@ struct alignas(64) PlainLanes {
     Column textureU, textureV, textureWidth;                  ///< at the point, and the footprint's width there
     Column front;               ///< 1: wo is on the front side; else 0
     Column3 smoothNormal;       ///< unit, of the front face
-    Column3 tangent, bitangent; ///< any length; 0: no normal map
+    Column3 tangent, bitangent; ///< any length; 0: no normal map, unless they are
+    Column derived;             ///< 1: along growing u and falling v; else 0
     Column3 mapTexel;           ///< of the normal map, scale applied
 
     // Where the path is: as in Surface and BsdfInputs.

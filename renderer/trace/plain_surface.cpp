@@ -39,7 +39,9 @@ void collectTriangle(const InstanceRecord& r, const MaterialRecord& material, co
     Vec3 normal(0);
     if (r.normals) normal = interpolate(r.normals, t, hit.u, hit.v);
     lanes.vertexNormal.set(i, r.normalFromObject * normal);
-    if (material.views[MaterialRecord::kNormalView] >= 0) collectTangents(r, t, normal, hit, lanes, i);
+    const bool mapped = material.views[MaterialRecord::kNormalView] >= 0;
+    lanes.derived[i] = mapped && !r.tangents ? 1.0f : 0.0f;
+    if (mapped && r.tangents) collectTangents(r, t, normal, hit, lanes, i);
     else lanes.tangent.set(i, Vec3(0)), lanes.bitangent.set(i, Vec3(0));
 
     const Vec2* uv = material.textures != 0 ? r.uv[material.uvSet] : nullptr;

@@ -8,8 +8,7 @@ namespace lumi {
 
 /// Can the kernels shade this hit on a triangle?
 inline bool isPlain(const InstanceRecord& instance, const MaterialRecord& material) {
-    return material.plain && instance.still() &&
-           (material.views[MaterialRecord::kNormalView] < 0 || instance.tangents != nullptr);
+    return material.plain && instance.still();
 }
 
 /// The lookups of one lane.
