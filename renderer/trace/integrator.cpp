@@ -148,7 +148,7 @@ void Integrator::arrive(PathBatch& batch, int depth) const {
         const InstanceRecord& instance = scene_.tables.instances[hit.instance];
         if (instance.body >= 0 || isDark(instance, hit.primitive, depth)) continue;
         const MaterialRecord& material = scene_.tables.materials[instance.materialOf(hit.primitive)];
-        if (depth < settings_.maxDepth && isPlain(instance, material)) {
+        if (isPlain(instance, material)) {
             collectPlain(batch, static_cast<uint32_t>(row), instance, material);
             batch.collected[row] = 1;
             continue;
@@ -195,7 +195,8 @@ void Integrator::shade(PathBatch& batch, uint32_t row, int depth, std::span<cons
         describeVertex(path, surface, wo, depth, *vertex);
         vertex->distance = distance;
     }
-    if (!isBlack(surface.emitted)) addEmission(path, surface, depth, vertex, batch);
+    if (!isBlack(surface.emitted))
+        addEmission(path, {point, surface.position, surface.outwardNormal, surface.emitted, surface.body}, depth, vertex, batch);
     if (last || surface.body >= 0) return;
 
     if (!surface.inputs.layered && !(surface.inputs.transmission > 0)) return addPlain(batch, row, surface);
@@ -232,20 +233,18 @@ void Integrator::shadeMiss(PathState& path, int depth, PathVertex* vertex, PathB
     vertex->emitted = isFinite(path.throughput * emitted) ? emitted : Vec3(0);
 }
 
-void Integrator::addEmission(PathState& path, const Surface& surface, int depth, PathVertex* vertex,
-                             PathBatch& batch) const {
+void Integrator::addEmission(PathState& path, const Found& found, int depth, PathVertex* vertex, PathBatch& batch) const {
     float weight = 1;
     if (depth > 0 && path.scatterPdf > 0 && settings_.strategy != DirectStrategy::Bsdf) {
         const Vec3& direction = path.ray.direction;
         const float lightPdf =
-            surface.body >= 0
-                ? scene_.lights.pdfBody(surface.body, path.scatter, direction, surface.position)
-                : scene_.lights.pdfTriangle(surface.point.instance, surface.point.primitive, path.scatter,
-                                            direction, surface.position, surface.outwardNormal);
+            found.body >= 0 ? scene_.lights.pdfBody(found.body, path.scatter, direction, found.position)
+                            : scene_.lights.pdfTriangle(found.point.instance, found.point.primitive, path.scatter, direction,
+                                                        found.position, found.outwardNormal, found.area);
         if (lightPdf > 0)
             weight = settings_.strategy == DirectStrategy::Light ? 0 : misWeight(path.scatterPdf, lightPdf);
     }
-    const Vec3 emitted = limited(path, surface.emitted * weight, depth);
+    const Vec3 emitted = limited(path, found.emitted * weight, depth);
     const Vec3 contribution = path.throughput * emitted;
     add(batch, path, contribution);
     if (vertex && isFinite(contribution)) vertex->emitted = emitted;

@@ -36,7 +36,14 @@ private:
     bool isDark(const InstanceRecord& instance, uint32_t primitive, int depth) const;
     void shade(PathBatch& batch, uint32_t index, int depth, std::span<const SurfacePoint> firstPoints) const;
     void shadeMiss(PathState& path, int depth, PathVertex* vertex, PathBatch& batch) const;
-    void addEmission(PathState& path, const Surface& surface, int depth, PathVertex* vertex, PathBatch& batch) const;
+    /// A point of a surface that a path found shining.
+    struct Found {
+        SurfacePoint point;
+        Vec3 position, outwardNormal, emitted;
+        int body = -1;
+        float area = 0;  ///< of the triangle, m^2; 0: not known
+    };
+    void addEmission(PathState& path, const Found& found, int depth, PathVertex* vertex, PathBatch& batch) const;
     void sampleLight(PathBatch& batch, uint32_t index, const Surface& surface, const Frame& frame, const Bsdf& bsdf,
                      int depth, PathVertex* vertex) const;
     bool continuePath(PathState& path, const Surface& surface, const Frame& frame, const Bsdf& bsdf, const Vec3& wo,
@@ -46,12 +53,13 @@ private:
     // Vertices on plain surfaces, all of a batch together (integrator_plain.cpp).
     void collectPlain(PathBatch& batch, uint32_t row, const InstanceRecord& instance, const MaterialRecord& material) const;
     void placePlain(PathBatch& batch, int depth) const;
+    void addPlainEmission(PathBatch& batch, int lane, int depth) const;
     void describePlain(const PathBatch& batch, int lane, int depth, PathVertex& vertex) const;
     void fillLane(PlainLanes& lanes, int lane, uint32_t row, const PathState& path) const;
     void addPlain(PathBatch& batch, uint32_t row, const Surface& surface) const;
     void shadePlain(PathBatch& batch, int depth) const;
     void drawNumbers(PathBatch& batch, int depth, bool lights, bool roulette) const;
-    void samplePlainLights(PathBatch& batch, int depth) const;
+    void samplePlainLights(PathBatch& batch) const;
     void pendPlainLights(PathBatch& batch, int depth) const;
     void continuePlain(PathBatch& batch, int lane, int depth, bool lastRay) const;
     static float spreadOf(bool diffuse, float roughness);

@@ -3,6 +3,7 @@
 #include "trace/albedo_table.h"
 #include "trace/integrator.h"
 #include "trace/sampler_kernels.h"
+#include "trace/surface_material.h"
 
 namespace lumi {
 
@@ -42,24 +43,48 @@ void Integrator::collectPlain(PathBatch& batch, uint32_t row, const InstanceReco
     collectTriangle(instance, material, batch.hits[row], lanes, i);
 }
 
-/// Surfaces of what was collected.
+/// Surfaces of what was collected, and their light. Of the last surface nothing else is asked.
 void Integrator::placePlain(PathBatch& batch, int depth) const {
     PlainLanes& lanes = batch.plain;
     if (lanes.count == 0) return;
     const auto path = [&](int i) -> const PathState& { return batch.paths[batch.active[lanes.row[i]]]; };
+    const bool described = depth < needs_.vertexDepths, last = depth >= settings_.maxDepth;
     plainKernels().place(lanes);
-    for (int i = 0; i < lanes.count; ++i)
-        if (batch.taps[i].material->textures != 0)
-            findTexels(scene_.tables, lanes, i, !path(i).diffuseBefore, batch.taps[i]);
-    for (int i = 0; i < lanes.count; ++i)
-        if (batch.taps[i].material->textures != 0) readTexels(scene_.tables, batch.taps[i], lanes, i);
-    plainKernels().bend(lanes);
-    if (settings_.regularize)
+    if (!last || described) {
         for (int i = 0; i < lanes.count; ++i)
-            if (path(i).diffuseBefore)
-                lanes.roughness[i] = std::max(lanes.roughness[i], settings_.leastRoughness(path(i).sample));
-    if (depth < needs_.vertexDepths)
+            if (batch.taps[i].material->textures != 0)
+                findTexels(scene_.tables, lanes, i, !path(i).diffuseBefore, batch.taps[i]);
+        for (int i = 0; i < lanes.count; ++i)
+            if (batch.taps[i].material->textures != 0) readTexels(scene_.tables, batch.taps[i], lanes, i);
+        plainKernels().bend(lanes);
+        if (settings_.regularize)
+            for (int i = 0; i < lanes.count; ++i)
+                if (path(i).diffuseBefore)
+                    lanes.roughness[i] = std::max(lanes.roughness[i], settings_.leastRoughness(path(i).sample));
+    }
+    if (described)
         for (int i = 0; i < lanes.count; ++i) describePlain(batch, i, depth, batch.vertices[lanes.row[i]]);
+    for (int i = 0; i < lanes.count; ++i)
+        if (batch.taps[i].material->emits) addPlainEmission(batch, i, depth);
+    if (last) lanes.count = 0;
+}
+
+void Integrator::addPlainEmission(PathBatch& batch, int i, int depth) const {
+    const PlainLanes& lanes = batch.plain;
+    const MaterialRecord& material = *batch.taps[i].material;
+    const bool front = lanes.front[i] > 0;
+    if (!front && !material.doubleSided) return;
+    PathState& path = batch.paths[batch.active[lanes.row[i]]];
+    const RawHit& hit = batch.hits[lanes.row[i]];
+    const InstanceRecord& instance = scene_.tables.instances[hit.instance];
+    const Vec2 b(hit.u, hit.v);
+    const Vec3 emitted = emissionAt(material, instance, instance.triangles[hit.primitive], b);
+    if (isBlack(emitted)) return;
+    const Vec3 geometric = lanes.geometricNormal.get<Vec3>(i);
+    addEmission(path,
+                {{hit.instance, hit.primitive, b, path.ray.time}, lanes.position.get<Vec3>(i),
+                 front ? geometric : -geometric, emitted, -1, lanes.area[i]},
+                depth, depth < needs_.vertexDepths ? &batch.vertices[lanes.row[i]] : nullptr, batch);
 }
 
 void Integrator::describePlain(const PathBatch& batch, int i, int depth, PathVertex& vertex) const {
@@ -74,7 +99,7 @@ void Integrator::describePlain(const PathBatch& batch, int i, int depth, PathVer
     vertex.wo = lanes.wo.get<Vec3>(i);
     vertex.distance = hit.distance;
     vertex.material = static_cast<uint32_t>(batch.taps[i].material - scene_.tables.materials.data());
-    vertex.roughness = std::clamp(lanes.roughness[i], 0.0f, 1.0f);
+    vertex.roughness = saturate(lanes.roughness[i]);
     vertex.cone = path.cone;
     vertex.throughput = path.throughput;
 }
@@ -129,7 +154,7 @@ void Integrator::shadePlain(PathBatch& batch, int depth) const {
             vertex.specularAlbedo = lanes.specularAlbedo.get<Vec3>(i);
         }
     if (usesLightSamples_) {
-        samplePlainLights(batch, depth);
+        samplePlainLights(batch);
         kernels.light(lanes, albedos, settings);
         pendPlainLights(batch, depth);
     }
@@ -141,23 +166,26 @@ void Integrator::shadePlain(PathBatch& batch, int depth) const {
     lanes.count = 0;
 }
 
-void Integrator::samplePlainLights(PathBatch& batch, int depth) const {
+void Integrator::samplePlainLights(PathBatch& batch) const {
     PlainLanes& lanes = batch.plain;
+    const auto count = static_cast<size_t>(lanes.count);
+    const auto path = [&](int i) -> const PathState& { return batch.paths[batch.active[lanes.row[i]]]; };
+    for (int i = 0; i < lanes.count; ++i)
+        batch.receivers[i] = {lanes.position.get<Vec3>(i), lanes.geometricNormal.get<Vec3>(i), path(i).ray.time,
+                              LightReceiver::Facing::Front, settings_.lightSampling};
+    scene_.lights.choose({batch.receivers, count}, lanes.lightX, lanes.lightY, {batch.choices, count});
     for (int i = 0; i < lanes.count; ++i) {
         lanes.lightPdf[i] = 0;
         if (lanes.smooth[i] > 0 && lanes.diffuseProbability[i] == 0) continue;
-        const PathState& path = batch.paths[batch.active[lanes.row[i]]];
-        const LightReceiver receiver{lanes.position.get<Vec3>(i), lanes.geometricNormal.get<Vec3>(i), path.ray.time,
-                                     LightReceiver::Facing::Front, settings_.lightSampling};
         LightSample& light = batch.lights[i];
-        if (!scene_.lights.sample(receiver, {lanes.lightX[i], lanes.lightY[i]},
-                                  {lanes.lightPointX[i], lanes.lightPointY[i]}, light))
+        if (!scene_.lights.samplePoint(batch.choices[i], batch.receivers[i], {lanes.lightPointX[i], lanes.lightPointY[i]},
+                                       light))
             continue;
         if (settings_.strategy == DirectStrategy::Bsdf && light.hittable) continue;
         // The sky's radiance is looked up when the shadow ray has found it: most samples never wait for that memory.
         Vec3 radiance = light.sky ? Vec3(1) : light.radiance;
-        if (!isBlack(path.absorption) && std::isfinite(light.distance))
-            radiance *= transmittance(path.absorption, light.distance);
+        const Vec3& absorption = path(i).absorption;
+        if (!isBlack(absorption) && std::isfinite(light.distance)) radiance *= transmittance(absorption, light.distance);
         lanes.lightPdf[i] = light.pdf;
         lanes.lightDirection.set(i, light.direction);
         lanes.lightTarget.set(i, light.target);

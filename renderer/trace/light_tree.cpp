@@ -106,6 +106,7 @@ private:
         node.radius[c] = b.box.radius() * 1.0001f + 1e-6f * maxComponent(glm::abs(centre));
         node.axisX[c] = b.axis.x, node.axisY[c] = b.axis.y, node.axisZ[c] = b.axis.z;
         node.cosSpread[c] = b.cosSpread, node.cosReach[c] = b.cosReach;
+        node.sinSpread[c] = std::sqrt(std::max(0.0f, 1 - b.cosSpread * b.cosSpread));
         node.bothSides[c] = b.bothSides ? 1.0f : 0.0f;
         node.intensity[c] = b.intensity;
     }

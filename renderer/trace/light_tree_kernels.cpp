@@ -29,7 +29,7 @@ inline void importance(const LightTreeNode& node, const LightTreePoint& p, float
         const float along = (node.axisX[i] * dx + node.axisY[i] * dy + node.axisZ[i] * dz) * inverse;
         const float cosAxis = node.bothSides[i] > 0 ? std::fabs(along) : along;
         const float sinAxis = std::sqrt(positive(1 - cosAxis * cosAxis));
-        const float cosSpread = node.cosSpread[i], sinSpread = std::sqrt(positive(1 - cosSpread * cosSpread));
+        const float cosSpread = node.cosSpread[i], sinSpread = node.sinSpread[i];
         const bool faced = cosAxis >= cosSpread;
         const float cosRest = faced ? 1.0f : cosAxis * cosSpread + sinAxis * sinSpread;
         const float sinRest = faced ? 0.0f : sinAxis * cosSpread - cosAxis * sinSpread;
@@ -61,17 +61,18 @@ inline float shareOf(float tree, float elsewhere) {
     return share < kLeastShare ? kLeastShare : share > 1 - kLeastShare ? 1 - kLeastShare : share;
 }
 
-/// Column of the running sum that holds `x`, never an empty one; `x` becomes its part of it in [0, 1).
+/// Column of the running sum that holds `x`, never an empty one; `x` becomes its part of it in [0, 1). Some weight is
+/// positive.
 inline int columnOf(const float* weights, float& x) {
-    int chosen = -1;
-    float rest = x;
-    for (int i = 0; i < kWidth; ++i) {
-        if (!(weights[i] > 0)) continue;
-        if (chosen >= 0) rest -= weights[chosen];
-        chosen = i;
-        if (rest < weights[i]) break;
-    }
-    const float part = chosen >= 0 ? rest / weights[chosen] : 0.0f;
+    float before[kWidth + 1];
+    before[0] = 0;
+    for (int i = 0; i < kWidth; ++i) before[i + 1] = before[i] + weights[i];
+    int chosen = 0;
+    for (int i = 1; i < kWidth; ++i) chosen += x >= before[i] ? 1 : 0;
+    // Rounding may leave x past the last that is not empty.
+    while (chosen > 0 && !(weights[chosen] > 0)) --chosen;
+    while (chosen < kWidth - 1 && !(weights[chosen] > 0)) ++chosen;
+    const float part = (x - before[chosen]) / weights[chosen];
     x = part < 0 ? 0.0f : part < 0x1.fffffep-1f ? part : 0x1.fffffep-1f;
     return chosen;
 }
@@ -82,71 +83,123 @@ inline bool isFar(const LightTreeNode& node, int column, const LightTreeGroup& g
     return dx * dx + dy * dy + dz * dz > group.far2;
 }
 
-/// Draws one of a group by intensity; `chance` is its share.
+/// Where in the order a light of a group likely is that holds the part `u` of its intensity.
+inline uint32_t guessIn(const LightTreeGroup& group, float u) {
+    const uint32_t count = group.end - group.begin, offset = static_cast<uint32_t>(u * static_cast<float>(count));
+    return group.begin + (offset < count ? offset : count - 1);
+}
+
+/// Draws one of a group by intensity; `chance` is its share. Lights of a group are mostly alike, and the guess is near.
 inline uint32_t drawFrom(const LightTreeView& tree, const LightTreeGroup& group, float& u, float& chance) {
     const double* before = tree.intensityBefore;
     const double first = before[group.begin], whole = before[group.end] - first, x = first + double(u) * whole;
-    uint32_t low = group.begin, high = group.end;  // before[low] <= x < before[high]
-    while (high - low > 1) {
-        const uint32_t middle = low + (high - low) / 2;
-        (before[middle] <= x ? low : high) = middle;
+    uint32_t at = guessIn(group, u), low = group.begin, high = group.end;  // before[low] <= x < before[high]
+    while (high - low > 1 && (before[at] > x || before[at + 1] <= x)) {
+        (before[at] <= x ? low : high) = before[at] <= x ? at + 1 : at;
+        at = low + (high - low) / 2;
     }
-    const double own = before[low + 1] - before[low];
+    if (high - low <= 1) at = low < group.end ? low : group.end - 1;
+    const double own = before[at + 1] - before[at];
     chance = static_cast<float>(own / whole);
-    const float rest = own > 0 ? static_cast<float>((x - before[low]) / own) : 0.0f;
+    const float rest = own > 0 ? static_cast<float>((x - before[at]) / own) : 0.0f;
     u = rest < 0x1.fffffep-1f ? rest : 0x1.fffffep-1f;
-    return tree.order[low];
+    return tree.order[at];
 }
 
-void pick(const LightTreeView& tree, const LightTreePoint& point, float elsewhere, float u, float v,
-          LightTreeChoice& out) {
-    out = LightTreeChoice();
-    alignas(64) float weights[kWidth];
-    importance(tree.nodes[0], point, weights);
-    float sum = sumOf(weights);
-    const float share = shareOf(sum, elsewhere);
-    if (u >= share) {
-        if (!(elsewhere > 0)) return;
-        out.elsewhere = true;
-        out.probability = 1 - share;
-        out.u = (u - share) / (1 - share);
-        return;
+/// A point on its way down the tree.
+struct Walker {
+    int point;
+    uint32_t node;                   ///< to be looked at next
+    const LightTreeGroup* group;     ///< to be drawn from next; null: none yet
+    float u, probability, sinceFresh;
+    bool fresh;                      ///< the second random number is unused
+};
+
+inline void prefetchNode(const LightTreeView& tree, uint32_t node) {
+    const char* bytes = reinterpret_cast<const char*>(&tree.nodes[node]);
+    for (size_t line = 0; line < sizeof(LightTreeNode); line += 64) __builtin_prefetch(bytes + line);
+    __builtin_prefetch(&tree.groups[node * kWidth]);
+}
+
+/// Chooses a child by the weights of the walker's node, or the tree at all at the root. False if the walk ends.
+inline bool descend(const LightTreeView& tree, const LightTreePoint& point, const float* weights, float elsewhere, float v,
+                    Walker& w, LightTreeChoice& out) {
+    const float sum = sumOf(weights);
+    if (w.node == 0) {
+        const float share = shareOf(sum, elsewhere);
+        if (w.u >= share) {
+            if (!(elsewhere > 0)) return false;
+            out.elsewhere = true;
+            out.probability = 1 - share;
+            out.u = (w.u - share) / (1 - share);
+            return false;
+        }
+        w.u /= share;
+        w.probability = w.sinceFresh = share;
     }
-    u /= share;
-    float probability = share, sinceFresh = share;
-    bool fresh = true;  // the second number is unused
-    for (uint32_t at = 0;;) {
-        const LightTreeNode& node = tree.nodes[at];
-        if (!(sum > 0)) return;
-        if (fresh && sinceFresh < kDigits) {
-            u = v;
-            fresh = false;
-        }
-        float x = u * sum;
-        const int column = columnOf(weights, x);
-        u = x;
-        const float chance = weights[column] / sum;
-        probability *= chance;
-        sinceFresh *= chance;
-        const uint32_t child = node.child[column];
-        if (child & LightTreeNode::kLight) {
-            out.light = child & ~LightTreeNode::kLight;
-            break;
-        }
-        const LightTreeGroup& group = tree.groups[at * kWidth + static_cast<uint32_t>(column)];
-        if (isFar(node, column, group, point)) {
-            if (fresh && sinceFresh < 4 * kDigits) u = v;
-            float inGroup = 1;
-            out.light = drawFrom(tree, group, u, inGroup);
-            probability *= inGroup;
-            break;
-        }
-        at = child;
-        importance(tree.nodes[at], point, weights);
-        sum = sumOf(weights);
+    if (!(sum > 0)) return false;
+    if (w.fresh && w.sinceFresh < kDigits) w.u = v, w.fresh = false;
+    w.u *= sum;
+    const int column = columnOf(weights, w.u);
+    const float chance = weights[column] / sum;
+    w.probability *= chance;
+    w.sinceFresh *= chance;
+    const LightTreeNode& node = tree.nodes[w.node];
+    const uint32_t child = node.child[column];
+    if (child & LightTreeNode::kLight) {
+        out.light = child & ~LightTreeNode::kLight;
+        out.probability = w.probability;
+        out.u = w.u;
+        return false;
     }
-    out.probability = probability;
-    out.u = u;
+    const LightTreeGroup& group = tree.groups[w.node * kWidth + static_cast<uint32_t>(column)];
+    if (isFar(node, column, group, point)) {
+        if (w.fresh && w.sinceFresh < 4 * kDigits) w.u = v;
+        w.group = &group;
+        const uint32_t guess = guessIn(group, w.u);
+        __builtin_prefetch(&tree.intensityBefore[guess]), __builtin_prefetch(&tree.order[guess]);
+    } else {
+        w.node = child;
+        prefetchNode(tree, child);
+    }
+    return true;
+}
+
+constexpr int kTogether = 64;
+
+void pickTogether(const LightTreeView& tree, const LightTreePoint* points, const float* elsewhere, const float* u,
+                  const float* v, LightTreeChoice* out, int count) {
+    alignas(64) float weights[kTogether][kWidth];
+    Walker walkers[kTogether];
+    for (int i = 0; i < count; ++i) {
+        walkers[i] = {i, 0, nullptr, u[i], 0, 0, true};
+        out[i] = LightTreeChoice();
+    }
+    while (count > 0) {
+        for (int i = 0; i < count; ++i)
+            if (!walkers[i].group) importance(tree.nodes[walkers[i].node], points[walkers[i].point], weights[i]);
+        int kept = 0;
+        for (int i = 0; i < count; ++i) {
+            Walker w = walkers[i];
+            LightTreeChoice& choice = out[w.point];
+            if (w.group) {
+                float inGroup = 1;
+                choice.light = drawFrom(tree, *w.group, w.u, inGroup);
+                choice.probability = w.probability * inGroup;
+                choice.u = w.u;
+            } else if (descend(tree, points[w.point], weights[i], elsewhere[w.point], v[w.point], w, choice)) {
+                walkers[kept++] = w;
+            }
+        }
+        count = kept;
+    }
+}
+
+void pick(const LightTreeView& tree, const LightTreePoint* points, const float* elsewhere, const float* u, const float* v,
+          LightTreeChoice* out, int count) {
+    for (int first = 0; first < count; first += kTogether)
+        pickTogether(tree, points + first, elsewhere + first, u + first, v + first, out + first,
+                     count - first < kTogether ? count - first : kTogether);
 }
 
 float probability(const LightTreeView& tree, const LightTreePoint& point, float elsewhere, uint32_t place,

@@ -13,6 +13,7 @@ struct alignas(64) LightTreeNode {
     float radius[kWidth];                         ///< of that sphere
     float axisX[kWidth], axisY[kWidth], axisZ[kWidth];  ///< unit: middle of the directions they face
     float cosSpread[kWidth];  ///< of the largest angle between the axis and a direction that one of them faces
+    float sinSpread[kWidth];  ///< and the sine
     float cosReach[kWidth];   ///< of the largest angle from there at which it still shines
     float bothSides[kWidth];  ///< 1: they face against the axis as well; else 0
     float intensity[kWidth];  ///< W/sr, luminance; 0: no child
@@ -54,8 +55,10 @@ struct LightTreeChoice {
 /// keeps a tenth of the choice, since neither knows what blocks it.
 /// A place is node * kWidth + column.
 struct LightTreeKernels {
-    void (*pick)(const LightTreeView& tree, const LightTreePoint& point, float elsewhere, float u, float v,
-                 LightTreeChoice& out);
+    /// Draws a light for each of `count` points, by two random numbers for each. Points walk down together, a node a round,
+    /// so that one's arithmetic and memory are not waited for by the next.
+    void (*pick)(const LightTreeView& tree, const LightTreePoint* points, const float* elsewhere, const float* u,
+                 const float* v, LightTreeChoice* out, int count);
     /// Probability of the light at `place`, the `rank`-th in the order.
     float (*probability)(const LightTreeView& tree, const LightTreePoint& point, float elsewhere, uint32_t place,
                          uint32_t rank);

@@ -16,6 +16,7 @@ constexpr float kLeastSky = 0.05f;
 }  // namespace
 
 int Lights::entryOf(uint32_t instance, uint32_t primitive) const {
+    if (firstEntry_[instance] != kNone) return static_cast<int>(firstEntry_[instance] + primitive);
     const uint32_t first = firstTriangle_[instance];
     if (first == kNone || triangleEntry_[first + primitive] == kNone) return -1;
     return static_cast<int>(triangleEntry_[first + primitive]);
@@ -62,12 +63,14 @@ Lights::Choice Lights::choose(const LightReceiver& receiver, Vec2 pick) const {
         return {entry, picks_.probability(entry)};
     }
     const float elsewhere = infiniteImportance(receiver);
-    float u = pick.x, share = 1;
-    if (finiteCount_ > 0) {
-        const LightTreeChoice choice = tree_.pick(treePoint(receiver), elsewhere, pick);
-        if (!choice.elsewhere) return {choice.light, choice.probability};
-        u = choice.u, share = choice.probability;
-    }
+    if (finiteCount_ == 0) return chosenInfinite(receiver, pick.x, 1, elsewhere);
+    const LightTreeChoice choice = tree_.pick(treePoint(receiver), elsewhere, pick);
+    if (!choice.elsewhere) return {choice.light, choice.probability};
+    return chosenInfinite(receiver, choice.u, choice.probability, elsewhere);
+}
+
+/// One of the infinite lights, which have `share` of the choice and the sum `elsewhere` of importances.
+Lights::Choice Lights::chosenInfinite(const LightReceiver& receiver, float u, float share, float elsewhere) const {
     Choice chosen;
     float rest = u * elsewhere;
     for (uint32_t i = 0; finiteCount_ + i < entries_.size(); ++i) {
@@ -78,6 +81,36 @@ Lights::Choice Lights::choose(const LightReceiver& receiver, Vec2 pick) const {
         rest -= own;
     }
     return chosen;
+}
+
+void Lights::choose(std::span<const LightReceiver> receivers, const float* pickX, const float* pickY,
+                    std::span<Choice> choices) const {
+    const size_t count = receivers.size();
+    std::fill_n(choices.begin(), count, Choice());
+    if (picks_.empty()) return;
+    const bool byTree = count > 0 && receivers[0].sampling == LightSampling::Tree && entries_.size() > 1 && finiteCount_ > 0;
+    if (!byTree) {
+        for (size_t i = 0; i < count; ++i) choices[i] = choose(receivers[i], Vec2(pickX[i], pickY[i]));
+    } else {
+        constexpr size_t kAtOnce = 64;
+        LightTreePoint points[kAtOnce];
+        float elsewhere[kAtOnce];
+        LightTreeChoice found[kAtOnce];
+        for (size_t first = 0; first < count; first += kAtOnce) {
+            const size_t size = std::min(kAtOnce, count - first);
+            for (size_t i = 0; i < size; ++i) {
+                points[i] = treePoint(receivers[first + i]);
+                elsewhere[i] = infiniteImportance(receivers[first + i]);
+            }
+            tree_.pick(points, elsewhere, pickX + first, pickY + first, found, static_cast<int>(size));
+            for (size_t i = 0; i < size; ++i)
+                choices[first + i] = found[i].elsewhere ? chosenInfinite(receivers[first + i], found[i].u,
+                                                                         found[i].probability, elsewhere[i])
+                                                        : Choice{found[i].light, found[i].probability};
+        }
+    }
+    for (size_t i = 0; i < count; ++i)
+        if (choices[i].entry < triangles_.size()) __builtin_prefetch(&triangles_[choices[i].entry]);
 }
 
 float Lights::pickProbability(const LightReceiver& receiver, uint32_t entry) const {
@@ -91,24 +124,29 @@ float Lights::pickProbability(const LightReceiver& receiver, uint32_t entry) con
 }
 
 bool Lights::sample(const LightReceiver& receiver, Vec2 pick, Vec2 u, LightSample& out) const {
-    if (picks_.empty()) return false;
-    const Choice chosen = choose(receiver, pick);
+    return !picks_.empty() && samplePoint(choose(receiver, pick), receiver, u, out);
+}
+
+bool Lights::samplePoint(const Choice& chosen, const LightReceiver& receiver, Vec2 u, LightSample& out) const {
     if (chosen.entry == kNone || !(chosen.probability > 0)) return false;
-    const Entry& entry = entries_[chosen.entry];
     out.light = static_cast<int>(chosen.entry);
     out.delta = false;
     out.hittable = true;
     out.sky = false;
+    if (chosen.entry < triangles_.size()) {
+        if (!sampleTriangle(triangles_[chosen.entry], receiver, u, out)) return false;
+        out.pdf *= chosen.probability;
+        return out.pdf > 0 && maxComponent(out.radiance) > 0;
+    }
+    const Entry& entry = entries_[chosen.entry];
     bool reached = false;
     switch (entry.kind) {
-        case Kind::Triangle:
-            reached = sampleTriangle(triangles_[entry.index], receiver, u, out);
-            break;
+        case Kind::Triangle: break;
         case Kind::Body:
             reached = sampleBody(tables_->bodies[entry.index], receiver, u, out);
             break;
         case Kind::Point:
-            reached = samplePoint(points_[entry.index], receiver, out);
+            reached = samplePunctual(points_[entry.index], receiver, out);
             break;
         case Kind::Directional:
             reached = sampleSun(suns_[entry.index], receiver.time, u, out);
@@ -125,11 +163,12 @@ bool Lights::sample(const LightReceiver& receiver, Vec2 pick, Vec2 u, LightSampl
 }
 
 Lights::Triangle Lights::triangleAt(const Triangle& triangle, float time) const {
-    const InstanceRecord& instance = tables_->instances[triangle.instance];
-    if (!instance.track) return triangle;
-    const MovingTriangle moving(instance, triangle.primitive, time);
-    const Vec3 corner = moving.corner(0);
-    return {corner, moving.corner(1) - corner, moving.corner(2) - corner, triangle.instance, triangle.primitive};
+    if (!(triangle.flags & Triangle::kMoves)) return triangle;
+    const MovingTriangle moving(tables_->instances[triangle.instance], triangle.primitive, time);
+    Triangle moved = triangle;
+    moved.corner = moving.corner(0);
+    moved.edge1 = moving.corner(1) - moved.corner, moved.edge2 = moving.corner(2) - moved.corner;
+    return moved;
 }
 
 Mat4 Lights::frameAt(int track, float time) const {
@@ -141,8 +180,6 @@ Mat4 Lights::frameAt(int track, float time) const {
 bool Lights::sampleTriangle(const Triangle& atOpen, const LightReceiver& receiver, Vec2 u, LightSample& out) const {
     const Vec2 b = lumi::sampleTriangle(u);
     const Triangle triangle = triangleAt(atOpen, receiver.time);
-    const InstanceRecord& instance = tables_->instances[triangle.instance];
-    const MaterialRecord& material = tables_->materials[instance.materialOf(triangle.primitive)];
     out.position = triangle.corner + triangle.edge1 * b.x + triangle.edge2 * b.y;
     const Vec3 toLight = out.position - receiver.position;
     const float distance2 = glm::dot(toLight, toLight);
@@ -153,15 +190,17 @@ bool Lights::sampleTriangle(const Triangle& atOpen, const LightReceiver& receive
     out.direction = toLight / out.distance;
     const Vec3 normal = cross / twiceArea;
     const float cosine = -glm::dot(normal, out.direction);
-    const bool front = instance.mirrored ? cosine < 0 : cosine > 0;
-    if (cosine == 0 || (!front && !material.doubleSided)) return false;
+    const bool front = triangle.flags & Triangle::kMirrored ? cosine < 0 : cosine > 0;
+    if (cosine == 0 || (!front && !(triangle.flags & Triangle::kDoubleSided))) return false;
     out.pdf = distance2 / (0.5f * twiceArea * std::abs(cosine));
-    out.radiance = triangleEmission(*tables_, triangle.instance, triangle.primitive, b);
-    out.target = offsetOrigin(out.position, cosine > 0 ? normal : -normal, instance.objectScale * 0x1p-18f);
+    out.radiance = triangle.flags & Triangle::kTextured
+                       ? triangleEmission(*tables_, triangle.instance, triangle.primitive, b)
+                       : triangle.radiance;
+    out.target = offsetOrigin(out.position, cosine > 0 ? normal : -normal, triangle.offset);
     return true;
 }
 
-bool Lights::samplePoint(const Point& point, const LightReceiver& receiver, LightSample& out) const {
+bool Lights::samplePunctual(const Point& point, const LightReceiver& receiver, LightSample& out) const {
     Vec3 place = point.position, axis = point.axis;
     if (point.track >= 0) {
         const Mat4 frame = frameAt(point.track, receiver.time);
@@ -203,11 +242,13 @@ bool Lights::sampleSun(const Sun& sun, float time, Vec2 u, LightSample& out) con
 }
 
 float Lights::pdfTriangle(uint32_t instance, uint32_t primitive, const LightReceiver& receiver, const Vec3& direction,
-                          const Vec3& hitPosition, const Vec3& hitNormal) const {
+                          const Vec3& hitPosition, const Vec3& hitNormal, float area) const {
     const int entry = entryOf(instance, primitive);
     if (entry < 0) return 0;
-    const Triangle triangle = triangleAt(triangles_[entries_[static_cast<size_t>(entry)].index], receiver.time);
-    const float area = 0.5f * glm::length(glm::cross(triangle.edge1, triangle.edge2));
+    if (!(area > 0)) {
+        const Triangle triangle = triangleAt(triangles_[static_cast<size_t>(entry)], receiver.time);
+        area = 0.5f * glm::length(glm::cross(triangle.edge1, triangle.edge2));
+    }
     const float cosine = std::abs(glm::dot(hitNormal, direction));
     const Vec3 toLight = hitPosition - receiver.position;
     if (!(area * cosine > 0)) return 0;
@@ -216,7 +257,7 @@ float Lights::pdfTriangle(uint32_t instance, uint32_t primitive, const LightRece
 
 size_t Lights::byteCount() const {
     return entries_.capacity() * sizeof(Entry) + triangles_.capacity() * sizeof(Triangle) +
-           (firstTriangle_.capacity() + triangleEntry_.capacity()) * sizeof(uint32_t) + picks_.byteCount() +
+           (firstTriangle_.capacity() + firstEntry_.capacity() + triangleEntry_.capacity()) * sizeof(uint32_t) + picks_.byteCount() +
            tree_.byteCount() + environment_.byteCount();
 }
 

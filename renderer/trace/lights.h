@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "trace/alias_table.h"
@@ -45,6 +46,19 @@ public:
     /// Is there a light that only light samples find?
     bool hasDelta() const { return hasDelta_; }
 
+    /// A light that was chosen for a receiver.
+    struct Choice {
+        uint32_t entry = kNone;
+        float probability = 0;
+    };
+    static constexpr uint32_t kNone = ~0u;
+    /// Chooses a light for each receiver by two random numbers, pickX[i] and pickY[i], and asks the caches for what
+    /// samplePoint() will read of it.
+    void choose(std::span<const LightReceiver> receivers, const float* pickX, const float* pickY,
+                std::span<Choice> choices) const;
+    /// A point of the chosen light by `u`. False if nothing can reach the receiver that way.
+    bool samplePoint(const Choice& choice, const LightReceiver& receiver, Vec2 u, LightSample& out) const;
+
     /// Chooses a light by `pick` and a point of it by `u`. False if nothing can reach the receiver that way.
     bool sample(const LightReceiver& receiver, Vec2 pick, Vec2 u, LightSample& out) const;
 
@@ -54,9 +68,9 @@ public:
     }
 
     /// Density with which sample() for `receiver` makes `direction`, which meets an emissive triangle at
-    /// `hitPosition` (unit `hitNormal`) or a light's body.
+    /// `hitPosition` (unit `hitNormal`; `area` of the triangle, 0 if it is not known) or a light's body.
     float pdfTriangle(uint32_t instance, uint32_t primitive, const LightReceiver& receiver, const Vec3& direction,
-                      const Vec3& hitPosition, const Vec3& hitNormal) const;
+                      const Vec3& hitPosition, const Vec3& hitNormal, float area = 0) const;
     float pdfBody(int body, const LightReceiver& receiver, const Vec3& direction, const Vec3& hitPosition) const;
 
     /// Radiance that a path finds that leaves the scene along `direction` at `time`: the sky, and directional lights with an
@@ -78,11 +92,16 @@ private:
     enum class Kind : uint8_t { Triangle, Body, Point, Directional, Environment };
     struct Entry {
         Kind kind = Kind::Triangle;
-        uint32_t index = 0;  ///< into triangles_, bodies of the tables, points_, suns_
+        uint32_t index = 0;  ///< into triangles_ (where it is the entry's own), bodies of the tables, points_, suns_
     };
-    struct Triangle {
+    /// All that a sample of it reads, in one line of the cache.
+    struct alignas(64) Triangle {
+        enum : uint32_t { kDoubleSided = 1, kMirrored = 2, kMoves = 4, kTextured = 8 };  ///< textured: emission or alpha
         Vec3 corner, edge1, edge2;
+        Vec3 radiance{0};     ///< unless textured
         uint32_t instance = 0, primitive = 0;
+        float offset = 0;     ///< as Surface's
+        uint32_t flags = 0;
     };
     struct Point {
         Vec3 position, axis, intensity;
@@ -100,10 +119,6 @@ private:
         std::vector<float> weights;       ///< power, for each entry
         std::vector<LightBounds> bounds;  ///< for each entry at a finite place
     };
-    struct Choice {
-        uint32_t entry = kNone;
-        float probability = 0;
-    };
 
     void addTriangles(Collected& collected);
     void addBodies(Collected& collected);
@@ -111,13 +126,14 @@ private:
     void addInfinite(const PosedScene& posed, Collected& collected);
 
     Choice choose(const LightReceiver& receiver, Vec2 pick) const;
+    Choice chosenInfinite(const LightReceiver& receiver, float u, float share, float elsewhere) const;
     float infiniteImportance(const LightReceiver& receiver, uint32_t infinite) const;
     float infiniteImportance(const LightReceiver& receiver) const;
     float treeShare(const LightReceiver& receiver, float elsewhere) const;
 
     bool sampleTriangle(const Triangle& triangle, const LightReceiver& receiver, Vec2 u, LightSample& out) const;
     bool sampleBody(const BodyRecord& body, const LightReceiver& receiver, Vec2 u, LightSample& out) const;
-    bool samplePoint(const Point& point, const LightReceiver& receiver, LightSample& out) const;
+    bool samplePunctual(const Point& point, const LightReceiver& receiver, LightSample& out) const;
     bool sampleSun(const Sun& sun, float time, Vec2 u, LightSample& out) const;
     /// As they are at one time of the open shutter.
     Triangle triangleAt(const Triangle& triangle, float time) const;
@@ -129,11 +145,12 @@ private:
 
     const SceneTables* tables_ = nullptr;
     std::vector<Entry> entries_;
-    std::vector<Triangle> triangles_;
+    std::vector<Triangle> triangles_;  ///< of the first entries
     std::vector<Point> points_;
     std::vector<Sun> suns_;
     std::vector<std::vector<Mat4>> tracks_;  ///< frames of moving points and suns
     std::vector<uint32_t> firstTriangle_;  ///< of each instance, into triangleEntry_; kNone: it does not emit
+    std::vector<uint32_t> firstEntry_;     ///< of each instance whose triangles all emit: entries in their order; else kNone
     std::vector<uint32_t> triangleEntry_;  ///< entry of each triangle of emitting instances, kNone if it does not emit
     uint32_t firstBody_ = 0;               ///< entry
     uint32_t finiteCount_ = 0;             ///< entries before this are in the tree, in its order
@@ -141,7 +158,6 @@ private:
     LightTree tree_;
     EnvironmentLight environment_;
     bool hittable_ = false, hasEmitters_ = false, hasDelta_ = false;
-    static constexpr uint32_t kNone = ~0u;
 };
 
 template <class Weight>

@@ -96,6 +96,7 @@ LightBounds bodyBounds(const LightShape& shape) {
 void Lights::addTriangles(Collected& collected) {
     const std::vector<InstanceRecord>& instances = tables_->instances;
     firstTriangle_.assign(instances.size(), kNone);
+    firstEntry_.assign(instances.size(), kNone);
     // Rows of triangles that may emit, by instance.
     size_t total = 0;
     for (size_t i = 0; i < instances.size(); ++i) {
@@ -124,7 +125,14 @@ void Lights::addTriangles(Collected& collected) {
                 if (!r.inWorld)
                     for (Vec3& corner : p) corner = transformPoint(r.worldFromObject, corner);
                 Triangle& triangle = all[firstTriangle_[i] + primitive];
-                triangle = {p[0], p[1] - p[0], p[2] - p[0], static_cast<uint32_t>(i), primitive};
+                triangle.corner = p[0], triangle.edge1 = p[1] - p[0], triangle.edge2 = p[2] - p[0];
+                triangle.radiance = material.emission;
+                triangle.instance = static_cast<uint32_t>(i), triangle.primitive = primitive;
+                triangle.offset = r.objectScale * 0x1p-18f;
+                const bool textured = (material.textures & MaterialRecord::kEmission) || material.source->hasAlpha();
+                const auto mark = [&](bool on, uint32_t flag) { triangle.flags |= on ? flag : 0u; };
+                mark(material.doubleSided, Triangle::kDoubleSided), mark(textured, Triangle::kTextured);
+                mark(r.mirrored, Triangle::kMirrored), mark(r.track != nullptr, Triangle::kMoves);
                 const float area = 0.5f * glm::length(glm::cross(triangle.edge1, triangle.edge2));
                 const float most = area * triangleLuminance(material, r, t);
                 intensity[firstTriangle_[i] + primitive] = most > 0 && std::isfinite(most) ? most : 0;
@@ -148,6 +156,12 @@ void Lights::addTriangles(Collected& collected) {
             bounds = swept(bounds, triangleBounds(later.corner, later.edge1, later.edge2, r.mirrored, bothSides, 0));
         }
         collected.bounds.push_back(bounds);
+    }
+    // Most instances emit with all their triangles, which then need no table.
+    for (size_t i = 0; i < instances.size(); ++i) {
+        if (firstTriangle_[i] == kNone) continue;
+        const auto begin = triangleEntry_.begin() + firstTriangle_[i], end = begin + instances[i].triangleCount;
+        if (std::find(begin, end, kNone) == end) firstEntry_[i] = begin == end ? kNone : *begin;
     }
 }
 

@@ -61,7 +61,9 @@ struct PathBatch {
     std::vector<SurfaceGeometry> geometry;  ///< of hits on triangles, those of collected rows left out
     std::vector<uint8_t> collected;         ///< 1 for rows that are in `plain` before they are shaded
     PlainLanes plain;                          ///< vertices on plain surfaces
-    LightSample lights[PlainLanes::kMost];     ///< of the lanes
+    LightReceiver receivers[PlainLanes::kMost];  ///< of the lanes, and the next two
+    Lights::Choice choices[PlainLanes::kMost];
+    LightSample lights[PlainLanes::kMost];
     PlainTaps taps[PlainLanes::kMost];         ///< of the first lanes, whose textures are looked up
     std::vector<PendingLight> pending;
     std::vector<BatchRay> shadowRays;

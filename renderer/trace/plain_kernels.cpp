@@ -92,6 +92,7 @@ void place(Lanes& lanes) {
         const Lane3 outward = unitOr(product, wo);
         const float cosine = dot(outward, wo);
         put(lanes.geometricNormal, i, choose(cosine >= 0, outward, outward * -1.0f));
+        lanes.area[i] = 0.5f * twiceArea;
         lanes.front[i] = cosine >= 0 ? 1.0f : 0.0f;
         put(lanes.smoothNormal, i, unitOr(at(lanes.vertexNormal, i), outward));
 

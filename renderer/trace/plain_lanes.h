@@ -37,6 +37,7 @@ struct alignas(64) PlainLanes {
     Column width;               ///< of the path's footprint on arrival, metres
     Column cornerU, cornerV, edge1U, edge1V, edge2U, edge2V;  ///< texture coordinates
     Column textureU, textureV, textureWidth;                  ///< at the point, and the footprint's width there
+    Column area;                ///< of the triangle, m^2
     Column front;               ///< 1: wo is on the front side; else 0
     Column3 smoothNormal;       ///< unit, of the front face
     Column3 tangent, bitangent; ///< any length; 0: no normal map, unless they are

@@ -1,6 +1,8 @@
 #include "trace/plain_surface.h"
 
-#include <algorithm>
+#include <cmath>
+
+#include "trace/bsdf_inputs.h"
 
 namespace lumi {
 namespace {
@@ -9,9 +11,6 @@ template <class T>
 T interpolate(const T* values, const UVec3& t, float b1, float b2) {
     return values[t.x] * (1 - b1 - b2) + values[t.y] * b1 + values[t.z] * b2;
 }
-
-/// Into [0, 1]; NaN becomes 0.
-float unitInterval(float x) { return x > 0 ? std::min(x, 1.0f) : 0.0f; }
 
 /// Tangents of the mesh in the world, for the normal map.
 void collectTangents(const InstanceRecord& r, const UVec3& t, const Vec3& objectNormal, const RawHit& hit,
@@ -53,8 +52,8 @@ void collectTriangle(const InstanceRecord& r, const MaterialRecord& material, co
     if (r.colours) baseColor *= Vec3(interpolate(r.colours, t, hit.u, hit.v));
     lanes.baseColor.set(i, baseColor);
     lanes.metallic[i] = material.metallic, lanes.roughness[i] = material.roughness;
-    lanes.specularColor.set(i, glm::clamp(material.specularColor, Vec3(0), Vec3(1e4f)));
-    lanes.specular[i] = unitInterval(material.specular);
+    lanes.specularColor.set(i, saturate(material.specularColor * 1e-4f) * 1e4f);
+    lanes.specular[i] = saturate(material.specular);
     lanes.ior[i] = material.ior >= 1 && std::isfinite(material.ior) ? material.ior : 1.5f;
 }
 

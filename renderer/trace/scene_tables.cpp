@@ -49,7 +49,7 @@ bool shareTaps(const Texture& a, const Texture& b) {
 /// Is the material plain? Then its textures are added.
 void addViews(MaterialRecord& r, std::vector<TextureView>& textures) {
     constexpr uint32_t kViewed = MaterialRecord::kBaseColor | MaterialRecord::kMetallicRoughness | MaterialRecord::kNormal;
-    if (r.layered || r.emits || r.transmission > 0 || (r.textures & ~(kViewed | MaterialRecord::kEmission |
+    if (r.layered || r.transmission > 0 || (r.textures & ~(kViewed | MaterialRecord::kEmission |
                                                                      MaterialRecord::kTransmission)) != 0)
         return;
     const Texture* const all[] = {&r.source->baseColorTexture, &r.source->metallicRoughnessTexture,

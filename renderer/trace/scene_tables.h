@@ -70,8 +70,8 @@ struct MaterialRecord {
     Vec3 absorption{0};  ///< 1/m inside a solid (Beer-Lambert)
     const Material* source = nullptr;
 
-    /// Neither layers, transmission nor emission, and no textures but the three below, all of one uv set: vertices on it
-    /// are shaded by kernels.
+    /// Neither layers nor transmission, and no textures but emission's and the three below, all of one uv set: vertices on
+    /// it are shaded by kernels.
     bool plain = false;
     bool sharedTaps = false;  ///< the three are alike but for their texels
     int uvSet = 0;
