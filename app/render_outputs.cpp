@@ -1,6 +1,8 @@
 #include <fmt/format.h>
+#include <signal.h>
 
 #include <algorithm>
+#include <cerrno>
 
 #include "app/render_command.h"
 #include "base/error.h"
@@ -10,6 +12,24 @@
 
 namespace lumi {
 namespace fs = std::filesystem;
+namespace {
+
+/// Removes unfinished videos of this name whose process was killed: <stem>.<process>.part<extension>, see VideoPipe.
+void removeLeftovers(const fs::path& video) {
+    const std::string head = video.stem().string() + ".", tail = ".part" + video.extension().string();
+    std::error_code failure;
+    std::vector<fs::path> leftovers;
+    for (const fs::directory_entry& entry : fs::directory_iterator(video.has_parent_path() ? video.parent_path() : ".", failure)) {
+        const std::string name = entry.path().filename().string();
+        if (name.size() <= head.size() + tail.size() || !name.starts_with(head) || !name.ends_with(tail)) continue;
+        const std::string process = name.substr(head.size(), name.size() - head.size() - tail.size());
+        if (process.size() > 9 || process.find_first_not_of("0123456789") != std::string::npos) continue;
+        if (kill(std::stoi(process), 0) != 0 && errno == ESRCH) leftovers.push_back(entry.path());
+    }
+    for (const fs::path& leftover : leftovers) fs::remove(leftover, failure);
+}
+
+}  // namespace
 
 std::string numberedName(const std::string& pattern, int64_t number, bool* hasNumber) {
     std::string name;
@@ -61,6 +81,7 @@ RenderOutputs::RenderOutputs(const std::vector<std::string>& names, const Output
 RenderOutputs::Output RenderOutputs::videoFrames(const std::string& name) const {
     const fs::path video = numberedName(name, 0);
     if (fs::exists(video)) throwUsage({"exists already", video.string(), "a new file", ""});
+    removeLeftovers(video);
     return {name + ".frames/%06d.png", ".png", true, video};  // % in the name stays doubled
 }
 

@@ -230,7 +230,11 @@ LiveMeasurement LiveMetrics::measure(const Snapshot& snapshot, const Held& refer
         pair.exposureEv = snapshot.scene->scene->render.exposureEv;
         pair.prepare();
         pane.nonFinitePixels = pair.nonFinitePixels;
-        for (const std::string& id : metrics) pane.values[id] = findMetric(id).measure(pair, false).value;
+        for (const std::string& id : metrics) {
+            const Measurement measured = findMetric(id).measure(pair, false);
+            pane.values[id] = measured.value;
+            if (!measured.reason.empty()) pane.reasons[id] = measured.reason;
+        }
         if (!map.empty()) maps.push_back(findMetric(map).measure(pair, true).map);
     }
     if (!map.empty() && maps.size() == result.panes.size()) showMaps(maps, findMetric(map).mapColours, result.panes);

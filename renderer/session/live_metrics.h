@@ -18,7 +18,8 @@ namespace lumi {
 /// How far one pane's result is from the reference.
 struct PaneMeasurement {
     std::string module;
-    std::map<std::string, double> values;  ///< by metric id
+    std::map<std::string, double> values;  ///< by metric id; NaN where there is no value
+    std::map<std::string, std::string> reasons;  ///< by metric id: why a value is NaN or infinite
     int64_t nonFinitePixels = 0;
     std::shared_ptr<const Image8> map;     ///< error map of the metric asked for; null without one
     DisplayInfo mapInfo;

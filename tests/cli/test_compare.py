@@ -217,6 +217,19 @@ class Compare(CommandTest):
             write_exr(self.folder / (pattern % frame), *size,
                       lambda x, y: (float("nan") if (frame, x, y) in broken else level, level, level))
 
+    def test_every_metric_for_each_frame(self):
+        for frame in range(2):
+            write_png(self.folder / f"e{frame}.png", 180, 180, lambda x, y: pattern(x + frame, y))
+            write_png(self.folder / f"f{frame}.png", 180, 180, lambda x, y: pattern(x, y + 2 * frame))
+        write_png(self.folder / "mask.png", 180, 180, lambda x, y: (255,) * 3 if x > y else (0,) * 3)
+        report = self.good("compare", "e%d.png", "f%d.png", "--mask", "mask.png", "--maps", "maps", "--json").json
+        for frame in range(2):
+            alone = self.good("compare", f"e{frame}.png", f"f{frame}.png", "--mask", "mask.png", "--maps", f"maps{frame}", "--json").json
+            for name in METRICS:
+                self.assertEqual(report["frames"][frame]["metrics"][name], alone["metrics"][name], name)
+                self.assertEqual(self.bytes(f"maps/{name}.000{frame}.exr"), self.bytes(f"maps{frame}/{name}.exr"), name)
+        self.assertLessEqual(set(METRICS) | {"temporal", "temporal_reprojected", "lag"}, set(report["metrics"]))
+
     def test_frames_that_are_missing_or_broken(self):
         self.frames("a.%d.exr", {0: 0.1, 1: 0.1, 2: 0.4, 4: 0.45, 5: 0.5}, broken={(1, 3, 3), (1, 4, 3)})
         self.frames("r.%d.exr", {0: 0.1, 1: 0.1, 2: 0.5, 3: 0.5, 4: 0.5, 5: 0.5, 6: 0.5}, broken={(2, 0, 0)})

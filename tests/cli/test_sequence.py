@@ -81,6 +81,14 @@ class Sequence(CommandTest):
         (self.folder / "a.1.exr").write_bytes(whole[1])
         self.assertIn(self.run_program("render", *WALK, "--module", "none", "--frames", 4, "--out", "a.%d.exr").code, (2, 3))
 
+    def test_a_frame_that_cannot_be_read_is_named(self):
+        self.render("--module", "none", "--frames", 4, "--out", "a.%d.exr")
+        (self.folder / "a.2.exr").write_bytes(b"")
+        self.refused(3, ["a.2.exr"], "render", *WALK, "--module", "none", "--frames", 4, "--out", "a.%d.exr")
+        self.render("--module", "none", "--frames", "2..4", "--out", "b.%d.exr")
+        # A frame whose history began elsewhere is another image, though its time is the same.
+        self.refused(2, ["b.2.exr", "another image"], "render", *WALK, "--module", "none", "--frames", 4, "--out", "b.%d.exr")
+
     def test_killed_at_any_moment(self):
         command = [PROGRAM, "render", *map(str, WALK), "--module", "none", "--frames", "40", "--quiet", "--out"]
         subprocess.run([*command, "w.%02d.png"], cwd=self.folder, check=True)
@@ -96,8 +104,11 @@ class Sequence(CommandTest):
     @unittest.skipUnless(shutil.which("ffmpeg"), "no ffmpeg program")
     def test_a_video_goes_on(self):
         command = ["render", *WALK, "--module", "none", "--frames", 12, "--quiet", "--out"]
+        (self.folder / "whole.999999999.part.mp4").write_bytes(b"of a process that was killed")
+        (self.folder / "whole.1.part.mp4").write_bytes(b"of one that lives")
         self.good(*command, "whole.mp4")
-        self.assertEqual(self.files(), ["whole.mp4"])
+        self.assertEqual(self.files(), ["whole.1.part.mp4", "whole.mp4"])
+        (self.folder / "whole.1.part.mp4").unlink()
         process = subprocess.Popen([PROGRAM, *map(str, command), "a.mp4"], cwd=self.folder)
         frames = self.folder / "a.mp4.frames"
         while process.poll() is None and len(list(frames.glob("*.png"))) < 3:

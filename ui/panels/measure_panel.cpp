@@ -18,7 +18,7 @@ constexpr const char* kQuick[] = {"rmse", "relmse", "psnr", "smape", "ssim"};
 std::string valueText(const PaneMeasurement& pane, const std::string& id) {
     const auto value = pane.values.find(id);
     if (value == pane.values.end()) return "-";
-    return std::isfinite(value->second) ? fmt::format("{:.5g}", value->second) : value->second > 0 ? "inf" : "nan";
+    return std::isfinite(value->second) ? fmt::format("{:.5g}", value->second) : value->second > 0 ? "inf" : "-";
 }
 
 void drawProgress(AppState& state, const ReferenceStatus& status) {
@@ -103,6 +103,8 @@ void drawValues(AppState& state, const LiveMeasurement& measured) {
                                 (metric.higherIsBetter ? mine->second > its->second : mine->second < its->second);
             const WithFont mono(ui().fonts.mono);
             ImGui::TextColored(toVec4(better ? palette::kGood : palette::kText), "%s", valueText(pane, metric.id).c_str());
+            if (const auto reason = pane.reasons.find(metric.id); reason != pane.reasons.end() && ImGui::IsItemHovered())
+                tooltip(metric.title, reason->second);
             markItem(fmt::format("metric:{}:{}", metric.id, i));
         }
     }

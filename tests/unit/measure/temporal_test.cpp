@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/error.h"
 #include "math/colour.h"
 #include "measure/lag.h"
 #include "measure/temporal.h"
@@ -125,6 +126,136 @@ TEST(Reprojected, UncoveredPointsDoNotCount) {
     EXPECT_EQ(measureReprojectedTemporal(pair, false).details[1].second, 1);
     depth.fill(kInfinity);
     EXPECT_EQ(measureReprojectedTemporal(pair, false).details[1].second, 0) << "the sky was no surface";
+}
+
+/// The pair with everything that the reprojected error looks at.
+struct Moving {
+    Image now = noise(30), before = noise(31), motion{kExtent, 3}, depth{kExtent, 1}, previousDepth{kExtent, 1}, mask{kExtent, 1};
+    Moving() {
+        for (int64_t i = 0; i < kExtent.area(); ++i) motion.data()[i] = 1;
+        depth.fill(3), previousDepth.fill(3), mask.fill(1);
+    }
+    TemporalPair pair() const {
+        TemporalPair pair{now, before};
+        pair.motion = &motion, pair.depth = &depth, pair.previousDepth = &previousDepth, pair.mask = &mask;
+        return pair;
+    }
+};
+
+TEST(SequenceMetrics, AreAsSymmetricAsDeclared) {
+    const Moving moving;
+    TemporalPair pair = moving.pair(), swapped{moving.before, moving.now};
+    swapped.motion = pair.motion;
+    for (const SequenceMetric& metric : sequenceMetricCatalog()) {
+        const std::string id = metric.id;
+        EXPECT_EQ(metric.symmetric, id == "temporal");
+        if (id == "temporal") EXPECT_EQ(measureTemporal(pair, false).value, measureTemporal(swapped, false).value);
+        if (id == "temporal_reprojected") EXPECT_NE(measureReprojectedTemporal(pair, false).value, measureReprojectedTemporal(swapped, false).value);
+    }
+    LagMeter rising(moving.before, moving.now), falling(moving.now, moving.before);
+    rising.add(moving.now), falling.add(moving.now);
+    EXPECT_NEAR(rising.curve()[0], 1, 1e-9);
+    EXPECT_NEAR(falling.curve()[0], 0, 1e-9);
+}
+
+TEST(SequenceMetrics, FramesThatAreTheSameGiveExactlyNothing) {
+    Moving moving;
+    moving.before = moving.now;
+    moving.motion.fill(0);
+    EXPECT_EQ(measureTemporal(moving.pair(), false).value, 0);
+    EXPECT_EQ(measureReprojectedTemporal(moving.pair(), false).value, 0);
+}
+
+TEST(SequenceMetrics, BrokenPixelsOfEitherFrameCountForNothing) {
+    Moving moving;
+    const float nan = std::nanf("");
+    moving.now.at(2, 5, 5) = nan, moving.before.at(0, 9, 8) = kInfinity;
+    Moving without = moving;
+    for (int c = 0; c < 3; ++c) without.now.at(c, 5, 5) = without.before.at(c, 9, 8) = 0.3f;
+    without.mask.at(0, 5, 5) = without.mask.at(0, 9, 8) = 0;
+    const Measurement seen = measureTemporal(moving.pair(), true);
+    EXPECT_EQ(seen.value, measureTemporal(without.pair(), false).value);
+    EXPECT_EQ(seen.details[0].second, 2);
+    EXPECT_EQ(seen.map.at(0, 5, 5), 0);
+    without.mask.at(0, 9, 8) = 1, without.mask.at(0, 8, 8) = 0;  // followed by one pixel to the right
+    const Measurement followed = measureReprojectedTemporal(moving.pair(), true);
+    EXPECT_EQ(followed.value, measureReprojectedTemporal(without.pair(), false).value);
+    EXPECT_EQ(followed.details[0].second, 2);
+    moving.motion.at(0, 12, 12) = nan;
+    without.mask.at(0, 12, 12) = 0;
+    EXPECT_EQ(measureReprojectedTemporal(moving.pair(), false).value, measureReprojectedTemporal(without.pair(), false).value);
+}
+
+TEST(SequenceMetrics, NothingThatCountsIsNoValueAndSaysWhy) {
+    Moving moving;
+    moving.motion.fill(1000);
+    EXPECT_EQ(measureReprojectedTemporal(moving.pair(), false).reason, "no point was seen in the frame before");
+    moving.mask.fill(0);
+    for (const Measurement& seen : {measureTemporal(moving.pair(), true), measureReprojectedTemporal(moving.pair(), true)}) {
+        EXPECT_TRUE(std::isnan(seen.value));
+        EXPECT_EQ(seen.reason, "the mask leaves no pixel");
+    }
+    moving.mask.fill(1), moving.now.fill(std::nanf(""));
+    EXPECT_EQ(measureTemporal(moving.pair(), false).reason, "no pixel is finite in both frames");
+    LagMeter meter(moving.before, noise(1));
+    meter.add(moving.now);
+    EXPECT_EQ(meter.lag(0).reason, "no pixel that the step changes is finite");
+    EXPECT_EQ(meter.lag(0).nonFinitePixels, kExtent.area());
+}
+
+TEST(SequenceMetrics, OtherSizesAreRefused) {
+    const Moving moving;
+    const Image small({kExtent.width - 1, kExtent.height}, 3);
+    EXPECT_THROW(measureTemporal({moving.now, small}, false), Error);
+    TemporalPair pair = moving.pair();
+    for (const Image* TemporalPair::*member : {&TemporalPair::motion, &TemporalPair::depth, &TemporalPair::previousDepth, &TemporalPair::mask}) {
+        TemporalPair other = pair;
+        other.*member = &small;
+        EXPECT_THROW(measureReprojectedTemporal(other, false), Error);
+    }
+}
+
+/// References of a light that goes from `low` to `high` at frame `step`, and an output that follows with weight 0.3.
+Lag followed(int frames, int step, float low, float high, const Image* mask = nullptr, int missing = -1) {
+    LagSequence sequence;
+    float seen = low;
+    for (int n = 0; n < frames; ++n) {
+        Image reference = noise(50), output = noise(51);
+        const float light = n < step ? low : high;
+        seen += 0.3f * (light - seen);
+        for (size_t i = 0; i < reference.size(); ++i) {
+            output.data()[i] = seen * reference.data()[i];
+            reference.data()[i] *= light * (1 + 0.001f * static_cast<float>(n % 2));  // a reference has noise too
+        }
+        for (int c = 0; c < 3; ++c) output.at(c, 4, 4) = 1e6f;
+        if (n != missing) sequence.add(n, output, reference, mask);
+    }
+    return sequence.result();
+}
+
+TEST(LagSequence, FindsTheStepWhateverItsBrightness) {
+    Image mask(kExtent, 1);
+    mask.fill(1);
+    mask.at(0, 4, 4) = 0;
+    for (const auto& [low, high] : {std::pair{0.001f, 0.002f}, {30.0f, 90.0f}, {2.0f, 0.5f}}) {
+        const Lag lag = followed(14, 3, low, high, &mask);
+        EXPECT_EQ(lag.stepFrame, 3) << low;
+        EXPECT_EQ(lag.value, 6) << low;  // 1 - 0.7^7 = 0.918
+        EXPECT_NEAR(lag.curve[2], 1 - std::pow(0.7, 3), 0.01) << low;
+        EXPECT_EQ(lag.curve.size(), 11u);
+    }
+}
+
+TEST(LagSequence, SaysWhyThereIsNoLag) {
+    EXPECT_EQ(followed(1, 0, 1, 1).reason, "there is one frame only");
+    EXPECT_EQ(followed(8, 20, 1, 2).reason, "the reference's light makes no step");
+    EXPECT_EQ(followed(8, 3, 1, 2, nullptr, 5).reason, "frame 5 is missing");
+    Image mask(kExtent, 1);
+    mask.fill(1);
+    mask.at(0, 4, 4) = 0;
+    EXPECT_EQ(followed(5, 3, 1, 2, &mask).reason, "not reached within 2 frames");
+    mask.fill(0);
+    EXPECT_EQ(followed(8, 3, 1, 2, &mask).reason, "the reference's light makes no step");
 }
 
 TEST(Lag, AnExponentialMeanFollowsItsFormula) {

@@ -1,5 +1,6 @@
 #include "session/live_metrics.h"
 
+#include <cmath>
 #include <cstdlib>
 
 #include "image/exr.h"
@@ -73,6 +74,21 @@ TEST_F(LiveMetricsTest, AReferenceOfAnotherSizeMeasuresNothing) {
     waitForReference();
     EXPECT_TRUE(logged("missing.exr"));
     EXPECT_EQ(metrics.reference().name, "small.exr") << "a failure leaves the one before";
+}
+
+TEST_F(LiveMetricsTest, WhatHasNoValueSaysWhy) {
+    open();
+    Image broken(session.snapshot()->extent, 3);
+    broken.fill(std::nanf(""));
+    metrics.choose({"rmse", "flip"}, "");
+    metrics.loadReference(write("broken.exr", broken), 0);
+    waitForReference();
+    const auto pane = measured()->panes[0];
+    EXPECT_EQ(pane.nonFinitePixels, broken.extent().area());
+    for (const char* id : {"rmse", "flip"}) {
+        EXPECT_TRUE(std::isnan(pane.values.at(id))) << id;
+        EXPECT_EQ(pane.reasons.at(id), "no pixel of the reference is finite");
+    }
 }
 
 TEST_F(LiveMetricsTest, MakesWhatIsShownAndKnowsWhenItIsNot) {
