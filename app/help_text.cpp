@@ -111,7 +111,7 @@ std::string viewFooter() {
            "  size W H  scale N  mouse X Y  hover NAME  press|release BUTTON  wheel N  click|double-click NAME\n"
            "  drag NAME DX DY  key CHORD  hold|lift KEY  text WORDS  drop PATH  set ID VALUE  pause N\n"
            "  wait-load  wait-shown  wait-frame N  wait-frames N  wait-spp N  wait-signals  wait-metrics\n"
-           "  wait-message TEXT  shot NAME  dump-ui NAME";
+           "  wait-message TEXT  shot NAME  dump-ui NAME  dump-lineage NAME";
 }
 
 std::string compareFooter() {

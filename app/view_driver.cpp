@@ -44,6 +44,20 @@ KeyChord chordOf(const ScriptLine& line) {
     return *chord;
 }
 
+/// By instance: the pinned pixel, and its rows.
+nlohmann::json lineageJson(const AppState& state) {
+    nlohmann::json all = nlohmann::json::object();
+    if (!state.snapshot) return all;
+    for (const auto& [instance, lineage] : state.snapshot->lineages) {
+        nlohmann::json& one = all[instance];
+        one["pixel"] = {lineage.pixel.x, lineage.pixel.y};
+        one["rows"] = nlohmann::json::array();
+        for (const Lineage::Row& row : lineage.rows)
+            one["rows"].push_back({{"stage", row.stage}, {"at", {row.at.x, row.at.y}}, {"weight", row.weight}, {"verdict", row.verdict}});
+    }
+    return all;
+}
+
 }  // namespace
 
 ViewDriver::ViewDriver(const ViewOptions& options)
@@ -262,6 +276,10 @@ void ViewDriver::run(const ScriptLine& line) {
         settle();
         files_.push_back(options_.out / (line.rest + ".json"));
         writeFileAtomically(files_.back(), interface_.uiMap().json());
+    } else if (c == "dump-lineage") {
+        settle();
+        files_.push_back(options_.out / (line.rest + ".json"));
+        writeFileAtomically(files_.back(), lineageJson(interface_.state()).dump(1) + "\n");
     } else {
         waits(line);
     }

@@ -20,6 +20,7 @@ namespace lumi {
 ///     wait-metrics             until the picture is measured against a reference
 ///     wait-shown               until the picture shows every change
 ///     shot NAME                NAME.png                               dump-ui NAME       NAME.json: where items are
+///     dump-lineage NAME        NAME.json: which neighbours and which taps of the history made the pinned pixel
 struct ScriptLine {
     std::string where;  ///< "script.txt:12"
     std::string command;

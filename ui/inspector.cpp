@@ -68,6 +68,34 @@ void drawRow(const PixelValue& row, bool shown) {
     drawValues(row);
 }
 
+/// One stage of a lineage: rows [begin, end), those that count.
+void drawStage(const Lineage& lineage, size_t begin, size_t end) {
+    const std::string& stage = lineage.rows[begin].stage;
+    size_t counting = 0;
+    for (size_t i = begin; i < end; ++i) counting += lineage.rows[i].weight > 0;
+    if (!ImGui::TreeNode(stage.c_str(), "%s: %zu of %zu", stage.c_str(), counting, end - begin)) return;
+    const WithFont mono(ui().fonts.mono);
+    for (size_t i = begin; i < end; ++i) {
+        const Lineage::Row& row = lineage.rows[i];
+        const std::string text = fmt::format("({:4}, {:4}) {:6.2f}%", row.at.x, row.at.y, 100 * row.weight);
+        ImGui::TextColored(toVec4(row.weight > 0 ? palette::kText : palette::kDim), "%s", text.c_str());
+        if (ImGui::IsItemHovered()) tooltip(row.verdict);
+        ImGui::SameLine(0, px(8));
+        smallText(shortened(row.verdict, ImGui::GetContentRegionAvail().x));
+    }
+    ImGui::TreePop();
+}
+
+/// What made the pixel, stage by stage.
+void drawLineage(const Lineage& lineage) {
+    for (size_t begin = 0; begin < lineage.rows.size();) {
+        size_t end = begin;
+        while (end < lineage.rows.size() && lineage.rows[end].stage == lineage.rows[begin].stage) ++end;
+        drawStage(lineage, begin, end);
+        begin = end;
+    }
+}
+
 }  // namespace
 
 void drawInspector(AppState& state) {
@@ -89,6 +117,8 @@ void drawInspector(AppState& state) {
     const std::string shown = state.buffer(state.activePane);
     for (const PixelValue& row : state.session.inspect(*state.snapshot, *pixel)) drawRow(row, row.buffer == shown);
     ImGui::EndTable();
+    const auto lineage = state.snapshot->lineages.find(state.module(state.activePane));
+    if (state.pinned && lineage != state.snapshot->lineages.end() && lineage->second.pixel == *pixel) drawLineage(lineage->second);
 }
 
 }  // namespace lumi

@@ -86,7 +86,9 @@ void Interface::layOut(Extent2 target) {
                             ? 0
                             : std::floor(std::clamp(0.27f * size.x, px(270), px(348)));
     state_.session.setCheckingScenes(state_.checkScenes);
-    state_.session.setInspecting(panel > 0 && state_.tab == PanelTab::View);
+    const bool inspects = panel > 0 && state_.tab == PanelTab::View;
+    state_.session.setInspecting(inspects);
+    state_.session.setInspectedPixel(inspects ? state_.pinned : std::nullopt);
     const ImRect picture(ImVec2(0, bar), ImVec2(size.x - panel, size.y - status));
     pictures_ = drawViewport(state_, picture);
     drawEmptyPicture(state_, picture);

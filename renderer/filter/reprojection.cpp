@@ -113,6 +113,11 @@ ReprojectedTaps Reprojection::taps(int x, int y) const {
     float* const weight[4] = {parts, parts + 1, parts + 2, parts + 3};
     tapRange(y, x, x + 1, index, weight, refusals);
     ReprojectedTaps taps;
+    const float px = static_cast<float>(x) + signals_[Signal::Motion].at(0, x, y), py = static_cast<float>(y) + signals_[Signal::Motion].at(1, x, y);
+    if (std::fabs(px) < 1e6f && std::fabs(py) < 1e6f) {
+        taps.x0 = static_cast<int>(std::floor(px));
+        taps.y0 = static_cast<int>(std::floor(py));
+    }
     for (size_t k = 0; k < 4; ++k) {
         taps.refusals[k] = static_cast<uint8_t>(why[k]);
         if (why[k] != kTapKept) continue;
@@ -122,9 +127,10 @@ ReprojectedTaps Reprojection::taps(int x, int y) const {
     if (taps.count > 0) return taps;
     const ReprojectedTaps wide = widen(x, y);
     if (wide.count == 0) return taps;
-    const auto refused = taps.refusals;
-    taps = wide;
-    taps.refusals = refused;
+    taps.count = wide.count;
+    taps.wide = true;
+    taps.index = wide.index;
+    taps.weight = wide.weight;
     return taps;
 }
 

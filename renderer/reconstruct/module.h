@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <stop_token>
@@ -56,17 +57,20 @@ struct FrameContext {
     const FrameSampling& sampling;
     StageTimer& timer;
     std::stop_token stop;
+    std::optional<Pixel> inspected{};  ///< whose lineage() is wanted
 };
 
 enum class RunResult { Completed, Stopped };
 
-/// Which taps, history and cells made a pixel, with weights and rejections, as text rows.
+/// Which taps of the history and which neighbours made a pixel, stage by stage.
 struct Lineage {
     struct Row {
-        std::string what;  ///< "history tap (412, 203)"
-        float weight = 0;
-        std::string verdict;  ///< "kept", "rejected: depth"
+        std::string stage;    ///< "history", "direct, level 2"
+        Pixel at;             ///< what contributed; for history a pixel of the previous frame
+        float weight = 0;     ///< its part in the stage's result; those of a stage sum to 1
+        std::string verdict;  ///< "kept", "refused: depth", or the factors of the weight
     };
+    Pixel pixel{-1, -1};
     std::vector<Row> rows;
 };
 
@@ -97,7 +101,8 @@ public:
     virtual std::span<const Tap> taps() const { return {}; }
     /// A tap of the last completed run; empty if it was not wanted then.
     virtual const Image& tap(const std::string& name) const;
-    virtual Lineage inspect(Pixel) const { return {}; }
+    /// Of the pixel that the last completed run was asked about; no rows if none was, or if the method does not tell.
+    virtual Lineage lineage() const { return {}; }
     /// Of the last completed run. A frame loop may rest while every module is done().
     virtual Convergence convergence() const { return {}; }
     /// Does history reach across these changes? Where it does not, a replay may begin here.

@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "reconstruct/lineage_rows.h"
+
 namespace lumi {
 namespace {
 
@@ -27,12 +29,16 @@ void ScreenFilter::forget() {
     history_.clear();
     antialiasing_.forget();
     taps_.clear();
+    lineage_ = {};
 }
 
 RunResult ScreenFilter::run(const FrameContext& context, Image& out) {
     assert(context.signals.extent() == extent_);
     if (context.stop.stop_requested()) return RunResult::Stopped;
     taps_.begin(context.wantedTaps);
+    pendingLineage_ = {};
+    if (const auto& p = context.inspected; p && p->x >= 0 && p->y >= 0 && p->x < extent_.width && p->y < extent_.height)
+        pendingLineage_.pixel = *p;
     {
         const auto measured = context.timer.measure("demodulation");
         demodulate(context.signals, frame_);
@@ -43,6 +49,7 @@ RunResult ScreenFilter::run(const FrameContext& context, Image& out) {
     history_.commit();
     antialiasing_.commit();
     taps_.commit();
+    lineage_ = pendingLineage_;
     commit();
     return RunResult::Completed;
 }
@@ -74,7 +81,8 @@ void AccumulatedInput::describe(ParameterVisitor& v) {
 }
 
 const Image* AccumulatedInput::integrate(const FrameContext& context, const DemodulatedFrame& frame,
-                                         const TemporalHistory* previous, TemporalHistory& next, CapturedTaps& taps) {
+                                         const TemporalHistory* previous, TemporalHistory& next, CapturedTaps& taps,
+                                         Lineage* lineage) {
     const auto measured = context.timer.measure("temporal filter");
     frame.addComponents(sum_);
     if (!enabled_) {
@@ -85,6 +93,7 @@ const Image* AccumulatedInput::integrate(const FrameContext& context, const Demo
     }
     if (!filterTemporally(context.signals, settings_, {&sum_}, previous, next, taps.target("reprojection"), context.stop)) return nullptr;
     taps.keep("historyLength", next.length);
+    if (lineage) addHistoryRows(*lineage, context.signals, previous, settings_);
     return &next.components[0].colour;
 }
 

@@ -16,6 +16,7 @@ public:
     RunResult run(const FrameContext& context, Image& out) final;
     std::span<const Tap> taps() const final { return taps_.declared(); }
     const Image& tap(const std::string& name) const final;
+    Lineage lineage() const final { return lineage_; }
     size_t byteCount() const override;
 
 protected:
@@ -38,6 +39,8 @@ protected:
     Extent2 extent() const { return extent_; }
     DemodulatedFrame& frame() { return frame_; }
     CapturedTaps& captured() { return taps_; }
+    /// Where filter() writes the rows of the pixel that is asked about; null: none is.
+    Lineage* inspected() { return pendingLineage_.pixel.x >= 0 ? &pendingLineage_ : nullptr; }
 
 private:
     Extent2 extent_;
@@ -45,6 +48,7 @@ private:
     FrameHistory<TemporalHistory> history_;
     AntialiasingPass antialiasing_;
     CapturedTaps taps_;
+    Lineage lineage_, pendingLineage_;
 };
 
 /// The taps of filterTemporally(): `reprojection`, its verdict, and `historyLength`.
@@ -59,7 +63,7 @@ public:
     bool enabled() const { return enabled_; }
     /// The light of `frame`, integrated if that is switched on; `next` is left empty if not. Null if stopped.
     const Image* integrate(const FrameContext& context, const DemodulatedFrame& frame, const TemporalHistory* previous,
-                           TemporalHistory& next, CapturedTaps& taps);
+                           TemporalHistory& next, CapturedTaps& taps, Lineage* lineage);
     size_t byteCount() const { return sum_.bytes(); }
 
 private:

@@ -220,7 +220,7 @@ bool FrameEngine::runModules(const FrameRequest& request, const Completed& next,
 
         timer.setPrefix(name + ".");
         const FrameContext context{request.frame, *next.signals, *next.scene, next.camera, previousCamera,
-                                   changes,       wanted,        tracer_,     asked,       timer,          stop};
+                                   changes,       wanted,        tracer_,     asked,       timer,          stop, request.inspected};
         auto out = std::make_shared<Image>();
         const Timer run;
         if (!runModule(name, context, *out, frame)) return false;
@@ -231,6 +231,7 @@ bool FrameEngine::runModules(const FrameRequest& request, const Completed& next,
         frame.results[name] = out;
         frame.convergence[name] = current.failed ? Convergence{} : current.module->convergence();
         if (current.failed) continue;
+        if (request.inspected) frame.lineages[name] = current.module->lineage();
         for (const std::string& tap : wanted)
             if (const Image& image = current.module->tap(tap); !image.empty())
                 frame.taps[name + "-" + tap] = std::make_shared<Image>(image);

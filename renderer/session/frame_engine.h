@@ -24,6 +24,7 @@ struct FrameRequest {
     SignalSet signals;                   ///< wanted beyond what the modules read and the views show
     std::map<std::string, TapSet> taps;  ///< wanted beyond what the views show, by instance
     std::vector<std::string> instances{};  ///< that run besides those of the views
+    std::optional<Pixel> inspected{};      ///< whose lineages are wanted
 
     /// Each once: those of the views first.
     std::vector<std::string> activeInstances() const;
@@ -41,6 +42,7 @@ struct FrameOutput {
     std::map<std::string, std::shared_ptr<const Image>> results;  ///< by instance
     std::map<std::string, std::shared_ptr<const Image>> taps;     ///< "<instance>-<tap>"
     std::map<std::string, Convergence> convergence;               ///< by instance
+    std::map<std::string, Lineage> lineages;                      ///< by instance, of the pixel asked about
     std::vector<std::pair<std::string, double>> stagesMs;
     std::map<std::string, double> runMs;  ///< by instance: its run() as a whole
     double frameMs = 0;

@@ -86,6 +86,13 @@ void Session::setInspecting(bool on) {
     if (on && impl_->document && impl_->resting) impl_->noteChange(Redo::Filter);
 }
 
+void Session::setInspectedPixel(std::optional<Pixel> pixel) {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->inspectedPixel == pixel) return;
+    impl_->inspectedPixel = pixel;
+    if (pixel && impl_->document && (impl_->resting || !impl_->rendering)) impl_->noteChange(Redo::Filter);
+}
+
 void Session::open(const std::filesystem::path& scene, int sceneIndex, const std::string& variant,
                    std::vector<std::pair<std::string, std::string>> set) {
     impl_->startLoading({scene, sceneIndex, variant, std::move(set)});

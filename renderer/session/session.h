@@ -41,6 +41,7 @@ struct Snapshot {
     std::shared_ptr<const Signals> signals;
     std::map<std::string, std::shared_ptr<const Image>> results;  ///< by instance name
     std::map<std::string, std::shared_ptr<const Image>> taps;     ///< "<instance>-<tap>"
+    std::map<std::string, Lineage> lineages;                      ///< by instance name, of the pixel asked about
     std::vector<PaneSnapshot> panes;
     std::vector<std::pair<std::string, double>> stagesMs;
     double frameMs = 0;
@@ -131,6 +132,8 @@ public:
     std::vector<BufferEntry> buffers(const std::string& module) const;
     /// While on, every frame has all signals and taps, shown or not, for inspect(); the pictures stay the same.
     void setInspecting(bool on);
+    /// While there is one, every frame tells which neighbours and which taps of the history made this pixel.
+    void setInspectedPixel(std::optional<Pixel> pixel);
     /// All buffers present in the snapshot at a pixel.
     std::vector<PixelValue> inspect(const Snapshot& snapshot, Pixel pixel) const;
 

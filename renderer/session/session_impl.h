@@ -37,6 +37,7 @@ struct Session::Impl {
         std::optional<Redo> redo;  ///< what the changes that it takes up invalidate
         int stepsBack = 0;
         bool inspecting = false;  ///< every buffer is wanted
+        std::optional<Pixel> inspectedPixel;
         uint64_t revision = 0;    ///< of the document
         uint64_t sceneNumber = 0; ///< of the scene that this work is about
         StateLog states;          ///< as it was then, for StepBack and SaveView
@@ -102,6 +103,7 @@ struct Session::Impl {
     std::optional<Redo> pending;  ///< the worst of the changes that no frame has seen
     bool rendering = true, playing = false, timeEdited = false;
     bool inspecting = false;  ///< frames have every buffer
+    std::optional<Pixel> inspectedPixel;
     bool stepWanted = false, restartWanted = false;
     FrameNumber restartFrame = 0;
     int stepsBack = 0;

@@ -127,6 +127,7 @@ Session::Impl::Work Session::Impl::takeWork() {
     Work work;
     work.stop = frameStop.get_token();
     work.inspecting = inspecting;
+    work.inspectedPixel = inspectedPixel;
     work.sceneNumber = sceneNumber;
     if (takeAside(work)) return work;
     const bool idle = (!rendering || resting) && !stepWanted;
@@ -179,6 +180,7 @@ void Session::Impl::drawFrame(const Work& work) {
                                : work.kind == Work::Redraw ? shown.number
                                                            : shown.number + 1;
     FrameRequest request{*work.document, number, first, {}, {}};
+    request.inspected = work.inspectedPixel;
     if (work.inspecting)
         for (const std::string& instance : work.document->activeInstances()) {
             const BufferSelection all = BufferSelection::all(instance);

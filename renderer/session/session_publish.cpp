@@ -73,6 +73,7 @@ void Session::Impl::publish() {
     next->signals = shown.signals;
     next->results = shown.results;
     next->taps = shown.taps;
+    next->lineages = shown.lineages;
     const int count = shownDocument->layout() == Layout::Single ? 1 : kViewCount;
     for (int i = 0; i < count; ++i) {
         const ViewSettings& view = shownDocument->view(i);

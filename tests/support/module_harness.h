@@ -75,7 +75,7 @@ public:
         const CameraPose pose = camera(step.shift);
         const FrameSampling sampling = samplingOf(step.frame, step.shift);
         return module.run(
-            {step.frame, signals, *posed_, pose, pose, step.changes, wanted, tracer_, sampling, timer, stop.get_token()}, out);
+            {step.frame, signals, *posed_, pose, pose, step.changes, wanted, tracer_, sampling, timer, stop.get_token(), inspected}, out);
     }
     /// The image of a completed run; frame 0 is a cut.
     Image image(Module& module, FrameNumber frame, const Signals& signals, Changes changes = {}) {
@@ -98,6 +98,8 @@ public:
     }
 
     Extent2 extent() const { return extent_; }
+
+    std::optional<Pixel> inspected;  ///< that later runs are asked about
 
 private:
     Extent2 extent_;

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "reconstruct/aaf/occlusion.h"
+#include "reconstruct/lineage_rows.h"
 
 namespace lumi {
 namespace {
@@ -68,6 +69,7 @@ bool AafModule::integrate(const FrameContext& context, const Step& step) {
                               step.next, captured().target("reprojection"), context.stop))
             return false;
         captured().keep("historyLength", step.next.length);
+        if (Lineage* lineage = inspected()) addHistoryRows(*lineage, context.signals, step.previous, temporalSettings_);
         direct_ = step.next.components[0].colour;
         indirect_ = step.next.components[1].colour;
         occlusion_ = step.next.components[2].colour;

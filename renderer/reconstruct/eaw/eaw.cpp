@@ -1,5 +1,7 @@
 #include "reconstruct/eaw/eaw.h"
 
+#include "reconstruct/lineage_rows.h"
+
 namespace lumi {
 namespace {
 
@@ -44,12 +46,14 @@ void EawModule::describe(ParameterVisitor& v) {
 }
 
 bool EawModule::filter(const FrameContext& context, const Step& step, Image& out) {
-    const Image* from = input_.integrate(context, frame(), step.previous, step.next, captured());
+    const Image* from = input_.integrate(context, frame(), step.previous, step.next, captured(), inspected());
     if (!from) return false;
     const auto measured = context.timer.measure("wavelet filter");
     for (int level = 0; level <= kMaxLevels; ++level) {
         if (level > 0 && level <= levels_) {
             Image& to = planes_[level % 2];
+            if (Lineage* lineage = inspected())
+                addEdgeAvoidingRows(*lineage, "level " + std::to_string(level), context.signals, edges_, level - 1, *from);
             if (!edgeAvoidingLevel(context.signals, edges_, level - 1, *from, to, context.stop)) return false;
             from = &to;
         }

@@ -38,7 +38,7 @@ void SbfModule::describe(ParameterVisitor& v) {
 }
 
 bool SbfModule::filter(const FrameContext& context, const Step& step, Image& out) {
-    const Image* input = input_.integrate(context, frame(), step.previous, step.next, captured());
+    const Image* input = input_.integrate(context, frame(), step.previous, step.next, captured(), inspected());
     if (!input) return false;
     const auto measured = context.timer.measure("cross-bilateral bank");
     if (!chooseBySure(context.signals, frame().albedo, settings_, *input, bank_, filtered_, context.stop)) return false;

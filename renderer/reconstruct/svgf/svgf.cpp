@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "reconstruct/lineage_rows.h"
 #include "reconstruct/svgf/svgf_taps.h"
 
 namespace lumi {
@@ -49,6 +50,7 @@ bool SvgfModule::integrate(const FrameContext& context, const Step& step) {
                           captured().target("reprojection"), context.stop, loss))
         return false;
     keepIntegrated(captured(), step.next);
+    if (Lineage* lineage = inspected()) addHistoryRows(*lineage, context.signals, step.previous, parameters_.temporal);
     for (size_t c = 0; c < kComponents; ++c) {
         input_[c].reset(extent());
         // The integrated colour moves on; handOver() gives the history what it is to keep.
@@ -87,6 +89,9 @@ const SvgfModule::Levels* SvgfModule::filterSpatially(const FrameContext& contex
     for (int level = 0; level <= kMaxLevels; ++level) {
         if (level > 0 && level <= parameters_.levels) {
             Levels& to = level == feedbackLevel() ? feedback_ : levels_[level % 2];
+            for (size_t c = 0; c < kComponents && inspected(); ++c)
+                addAtrousRows(*inspected(), (c == 0 ? "direct, level " : "indirect, level ") + std::to_string(level), guide, settings,
+                              (*from)[c], 1 << (level - 1));
             if (!atrousLevel(guide, settings, 1 << (level - 1), {&(*from)[0], &(*from)[1]}, {&to[0], &to[1]}, context.stop))
                 return nullptr;
             from = &to;

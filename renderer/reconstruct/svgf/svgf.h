@@ -18,6 +18,9 @@ namespace lumi {
 /// - The 3x3 fall-back's weights, which the paper does not state, are equal.
 /// - Fig. 3 feeds colour *and* moments of the first level back, sec. 4.3 colour alone: the moments stay unfiltered.
 /// - Values that are not finite are dropped and counted before anything reads them.
+///
+/// What it leaves, as sec. 6 says of aliased geometry: single bright pixels on ribs, pots and leaves that turn within a few
+/// pixels. Eq. 4 refuses every neighbour there, at every level, so that a pixel has but its own history to lean on.
 class SvgfModule : public ScreenFilter {
 public:
     enum class DepthWeight { AsPrinted, PlaneDistance };

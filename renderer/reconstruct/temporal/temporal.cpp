@@ -1,5 +1,7 @@
 #include "reconstruct/temporal/temporal.h"
 
+#include "reconstruct/lineage_rows.h"
+
 namespace lumi {
 namespace {
 
@@ -24,6 +26,7 @@ bool TemporalModule::filter(const FrameContext& context, const Step& step, Image
     frame().addComponents(sum_);
     if (!filterTemporally(context.signals, settings_, {&sum_}, step.previous, step.next, captured().target("reprojection"), context.stop))
         return false;
+    if (Lineage* lineage = inspected()) addHistoryRows(*lineage, context.signals, step.previous, settings_);
     const TemporalComponent& integrated = step.next.components[0];
     remodulate(frame(), integrated.colour, nullptr, out);
     captured().keep("illumination", integrated.colour);

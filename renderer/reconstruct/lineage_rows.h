@@ -1,0 +1,23 @@
+#pragma once
+#include "filter/atrous.h"
+#include "filter/edge_avoiding.h"
+#include "filter/temporal.h"
+#include "reconstruct/module.h"
+
+namespace lumi {
+
+/// Rows of a Lineage for the stages that several modules share. Parts are normalised, so that those of a stage sum to 1.
+
+/// The stage `history`: this frame's sample and the taps of the frame before, those that were refused with why.
+/// `previous` may be null: there is no frame before.
+void addHistoryRows(Lineage& lineage, const Signals& signals, const TemporalHistory* previous, const TemporalSettings& settings);
+
+/// A level of SVGF's wavelet, of the component `illumination`, its input: eqs. 1 to 5.
+void addAtrousRows(Lineage& lineage, const std::string& stage, const SurfaceGuide& guide, const AtrousSettings& settings,
+                   const Illumination& illumination, int step);
+
+/// A level (from 0) of the wavelet with fixed edges over `in`.
+void addEdgeAvoidingRows(Lineage& lineage, const std::string& stage, const Signals& signals, const EdgeAvoidingSettings& settings,
+                         int level, const Image& in);
+
+}  // namespace lumi

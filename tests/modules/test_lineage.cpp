@@ -1,0 +1,91 @@
+// Which taps made a pixel: the parts of every stage sum to 1 and, applied to the buffers, give the buffers that follow.
+#include <map>
+
+#include "support/module_harness.h"
+
+namespace lumi::test {
+namespace {
+
+constexpr Extent2 kExtent{64, 48};
+
+struct Asked {
+    Lineage lineage;
+    std::map<std::string, Image> before, now;  ///< taps of the frame before, and of this one
+};
+
+Asked ask(const char* id, Pixel pixel) {
+    ModuleHarness harness(kExtent);
+    const auto module = findModule(id).make();
+    module->resize(kExtent);
+    Asked asked;
+    for (FrameNumber frame = 0; frame < 4; ++frame) {
+        const float shift = 0.02f * static_cast<float>(frame);
+        Image image;
+        harness.inspected = frame == 3 ? std::optional(pixel) : std::nullopt;
+        EXPECT_EQ(harness.run(*module, {frame, {.cut = frame == 0, .camera = frame > 0}, shift, false},
+                              harness.trace(frame, shift, frame > 0 ? shift - 0.02f : 0), image), RunResult::Completed);
+        asked.before = asked.now;
+        for (const Tap& tap : module->taps()) asked.now[tap.name] = module->tap(tap.name);
+    }
+    asked.lineage = module->lineage();
+    return asked;
+}
+
+/// Green of the weighted sum of a stage's pixels in `image`; what the rows' parts sum to.
+double sumOver(const Lineage& lineage, const std::string& stage, const Image& image, double& parts) {
+    double sum = 0;
+    parts = 0;
+    for (const Lineage::Row& row : lineage.rows) {
+        if (row.stage != stage) continue;
+        parts += row.weight;
+        if (row.weight > 0) sum += row.weight * image.at(1, row.at.x, row.at.y);
+    }
+    return sum;
+}
+
+TEST(LineageOf, SvgfGivesEachLevel) {
+    for (const Pixel pixel : {Pixel{20, 30}, Pixel{40, 25}, Pixel{32, 44}}) {
+        const Asked asked = ask("svgf", pixel);
+        ASSERT_EQ(asked.lineage.pixel, pixel);
+        for (const std::string component : {"direct", "indirect"})
+            for (int level = 1; level <= 5; ++level) {
+                double parts = 0;
+                const std::string before = component + "Level" + std::to_string(level - 1), after = component + "Level" + std::to_string(level);
+                const double sum = sumOver(asked.lineage, component + ", level " + std::to_string(level), asked.now.at(before), parts);
+                EXPECT_NEAR(parts, 1, 1e-5);
+                EXPECT_NEAR(sum, asked.now.at(after).at(1, pixel.x, pixel.y), 1e-3) << after;
+            }
+        // History: this frame's sample, and the first level's output of the frame before.
+        double sum = 0, parts = 0;
+        for (const Lineage::Row& row : asked.lineage.rows) {
+            if (row.stage != "history" || row.weight == 0) continue;
+            const bool sample = row.verdict.find("sample") != std::string::npos;
+            const Image& from = sample ? asked.now.at("demodulatedDirect") : asked.before.at("directLevel1");
+            sum += row.weight * from.at(1, row.at.x, row.at.y);
+            parts += row.weight;
+        }
+        EXPECT_NEAR(parts, 1, 1e-5);
+        EXPECT_NEAR(sum, asked.now.at("directLevel0").at(1, pixel.x, pixel.y), 1e-4);
+    }
+}
+
+TEST(LineageOf, EawGivesEachLevel) {
+    const Pixel pixel{25, 28};
+    const Asked asked = ask("eaw", pixel);
+    for (int level = 1; level <= 5; ++level) {
+        double parts = 0;
+        const double sum = sumOver(asked.lineage, "level " + std::to_string(level), asked.now.at("level" + std::to_string(level - 1)), parts);
+        EXPECT_NEAR(parts, 1, 1e-5);
+        EXPECT_NEAR(sum, asked.now.at("level" + std::to_string(level)).at(1, pixel.x, pixel.y), 1e-3);
+    }
+}
+
+TEST(LineageOf, NobodyAskedNobodyAnswers) {
+    EXPECT_TRUE(ask("svgf", {-1, 3}).lineage.rows.empty());
+    EXPECT_TRUE(ask("temporal", {64, 3}).lineage.rows.empty());
+    const Lineage lineage = ask("temporal", {63, 47}).lineage;
+    EXPECT_GE(lineage.rows.size(), 5u);
+}
+
+}  // namespace
+}  // namespace lumi::test
