@@ -11,6 +11,7 @@
 #include "app/commands.h"
 #include "app/progress_line.h"
 #include "app/study_tables.h"
+#include "base/error.h"
 #include "base/files.h"
 #include "reference/reference.h"
 #include "study/run_study.h"
@@ -84,7 +85,10 @@ int runStudyCommand(const StudyCommandOptions& options, const MachineOptions& ma
         }
         for (const auto& [folder, count] : folders) std::fputs(fmt::format("Wrote {} files in {}\n", count, folder).c_str(), stderr);
     }
-    return 0;
+    const bool failed = std::any_of(outcome.checks.begin(), outcome.checks.end(), [](const StudyCheckResult& result) {
+        return result.verdict == StudyCheckResult::Verdict::Fails || result.verdict == StudyCheckResult::Verdict::Unknown;
+    });
+    return failed ? static_cast<int>(ErrorKind::CheckFailed) : 0;
 }
 
 }  // namespace lumi

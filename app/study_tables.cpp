@@ -148,6 +148,17 @@ void printPairs(const Study& study, const StudyOutcome& outcome) {
     table.print();
 }
 
+void printChecks(const Study& study, const StudyOutcome& outcome) {
+    TextTable table;
+    table.add({"claims", "scene", "spp", "value", "against", "ratio", "verdict"});
+    for (const StudyCheckResult& result : outcome.checks)
+        table.add({"  " + claimText(study.checks[result.check]), sceneName(study, result.scene), std::to_string(result.spp), shown(result.value),
+                   result.against.empty() ? "-" : result.against, result.against.empty() ? "-" : shown(result.ratio), verdictText(result.verdict)});
+    if (table.empty()) return;
+    std::puts("");
+    table.print();
+}
+
 }  // namespace
 
 void printStudy(const StudyOutcome& outcome) {
@@ -156,6 +167,7 @@ void printStudy(const StudyOutcome& outcome) {
     printNonFinite(study, outcome);
     printStages(study, outcome);
     printPairs(study, outcome);
+    printChecks(study, outcome);
 }
 
 }  // namespace lumi

@@ -197,7 +197,26 @@ Json intervalJson(const Interval& interval) {
             {"count", interval.count}};
 }
 
-Json resultsJson(const Study& study, const StudyPlan& plan, const StudyRecords& records, const StudySummaries& summaries) {
+namespace {
+
+Json checksJson(const Study& study, const std::vector<StudyCheckResult>& checks) {
+    Json list = Json::array();
+    for (const StudyCheckResult& result : checks) {
+        const StudyCheck& check = study.checks[result.check];
+        Json entry = {{"claim", claimText(check)}, {"scene", sceneName(study, result.scene)}, {"spp", result.spp}, {"entry", check.entry},
+                      {"metric", check.metric}, {"value", intervalJson(result.value)}};
+        if (!result.against.empty()) entry["against"] = result.against, entry["ratio"] = intervalJson(result.ratio);
+        entry[check.atLeast ? "at_least" : "at_most"] = check.bound;
+        entry["verdict"] = verdictText(result.verdict);
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
+}  // namespace
+
+Json resultsJson(const Study& study, const StudyPlan& plan, const StudyRecords& records, const StudySummaries& summaries,
+                 const std::vector<StudyCheckResult>& checks) {
     Json all;
     all["study"] = {{"name", study.name}, {"title", study.title}, {"paper", study.paper}, {"preset", study.preset},
                     {"file_digest", study.digest}, {"isa", isaName(activeIsa())}, {"reference_spp", study.reference.spp},
@@ -212,6 +231,7 @@ Json resultsJson(const Study& study, const StudyPlan& plan, const StudyRecords& 
     all["bias_and_variance"] = biasJson(study, plan, summaries);
     all["convergence"] = slopesJson(study, plan, summaries);
     if (!study.ablations.empty()) all["ablations"] = stagesJson(study, plan, summaries);
+    if (!study.checks.empty()) all["checks"] = checksJson(study, checks);
     all["nonfinite"] = nonFiniteJson(study, plan, summaries);
     if (!study.pairs.empty()) all["equivalent_samples"] = equivalentsJson(study, plan, summaries);
     return all;

@@ -2,6 +2,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "study/checks.h"
 #include "study/summary.h"
 #include "study/times.h"
 
@@ -10,7 +11,7 @@ namespace lumi {
 /// results.json: what was run, every row, references with their noise, tuning, and the summaries. It holds no time of day,
 /// duration, thread count, host or path, so that an interrupted study ends with the bytes of an uninterrupted one.
 nlohmann::ordered_json resultsJson(const Study& study, const StudyPlan& plan, const StudyRecords& records,
-                                   const StudySummaries& summaries);
+                                   const StudySummaries& summaries, const std::vector<StudyCheckResult>& checks = {});
 
 /// results.csv: a row per (scene, frame or sequence, entry, spp, seed), metrics as columns, `<metric>_corrected` beside
 /// those whose reference noise is taken off; numbers in the shortest form that reads back as the same.

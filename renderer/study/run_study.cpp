@@ -157,6 +157,7 @@ private:
     void finish() {
         outcome_.summaries = summarize(study_, plan_, outcome_.records);
         outcome_.times = summarizeTimes(study_, plan_, outcome_.records);
+        outcome_.checks = checkClaims(study_, plan_, outcome_.records);
         std::set<std::string> kept;
         const auto write = [&](const std::string& name, std::span<const uint8_t> bytes) {
             writeFileAtomically(options_.out / name, bytes);
@@ -166,7 +167,7 @@ private:
         const auto writeText = [&](const std::string& name, const std::string& text) {
             write(name, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
         };
-        const auto results = resultsJson(study_, plan_, outcome_.records, outcome_.summaries);
+        const auto results = resultsJson(study_, plan_, outcome_.records, outcome_.summaries, outcome_.checks);
         const auto times = timingsJson(study_, plan_, outcome_.times);
         const std::vector<DrawnFigure> figures = drawFigures(study_, plan_, outcome_.records, log_);
         const std::vector<LatexTable> tables = latexTables(study_, plan_, outcome_.summaries, outcome_.times);

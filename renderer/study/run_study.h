@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/messages.h"
+#include "study/checks.h"
 #include "study/study.h"
 #include "study/summary.h"
 #include "study/times.h"
@@ -34,6 +35,7 @@ struct StudyOutcome {
     StudyRecords records;
     StudySummaries summaries;
     StudyTimes times;
+    std::vector<StudyCheckResult> checks;
     std::vector<std::filesystem::path> files;  ///< results.json, results.csv, timings.json, report.html, figures/, tables/
     size_t jobsRun = 0, jobsFound = 0;
     double seconds = 0;

@@ -88,6 +88,16 @@ struct StudyAblation {
     std::vector<Stage> stages;
 };
 
+/// A claim that the numbers hold or not, on each scene or on average.
+struct StudyCheck {
+    std::string title;  ///< in words; empty: made from the rest
+    std::string entry, metric;
+    std::vector<std::string> against;  ///< entries whose value times `bound` is the limit; empty: `bound` is
+    double bound = 1;
+    bool atLeast = false;  ///< else at most
+    bool onAverage = false;
+};
+
 /// An inset strip: one picture with its crops marked, and each crop as the methods show it.
 struct StudyFigure {
     std::string name;                  ///< of its files
@@ -142,6 +152,7 @@ struct Study {
     std::vector<StudyPair> pairs;
     std::vector<StudyAblation> ablations;
     std::vector<StudyFigure> figures;
+    std::vector<StudyCheck> checks;
     StudyIntervals intervals;
     StudyPictures pictures;
 

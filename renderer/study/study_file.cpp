@@ -196,6 +196,7 @@ void readBody(const JsonTree& tree, const JsonValue& merged, Study& study) {
     readPairs(tree, top.find("pairs"), study);
     readAblations(tree, top.find("ablations"), study);
     readFigures(tree, top.find("figures"), study);
+    readChecks(tree, top.find("checks"), study);
     study.intervals = readIntervals(tree, top.find("intervals"));
     study.pictures = readPictures(tree, top.find("pictures"));
     top.finish();

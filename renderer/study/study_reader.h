@@ -30,6 +30,7 @@ std::string readEntryName(const JsonTree& tree, const JsonValue& value, const St
 
 /// Of a study whose entries, sweep and frames are read.
 void readAblations(const JsonTree& tree, const JsonValue* section, Study& study);
+void readChecks(const JsonTree& tree, const JsonValue* section, Study& study);
 void readFigures(const JsonTree& tree, const JsonValue* section, Study& study);
 
 MetricSettings readMetricSettings(const JsonTree& tree, const JsonValue* section);

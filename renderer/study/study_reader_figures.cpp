@@ -120,6 +120,33 @@ void readAblations(const JsonTree& tree, const JsonValue* section, Study& study)
     }
 }
 
+void readChecks(const JsonTree& tree, const JsonValue* section, Study& study) {
+    if (!section) return;
+    if (!section->isArray()) refuseValue(tree, *section, "checks", "an array of checks");
+    for (const JsonValue& item : section->items) {
+        ObjectReader reader(tree, item, "check");
+        StudyCheck check;
+        check.title = reader.text("title").value_or("");
+        check.entry = readEntryName(tree, reader.need("entry"), study, "entry");
+        const JsonValue& metric = reader.need("metric");
+        check.metric = readText(tree, metric, "metric");
+        std::vector<std::string> measured = study.metrics;
+        measured.insert(measured.end(), study.temporalMetrics.begin(), study.temporalMetrics.end());
+        if (!study.measures(check.metric)) refuseName(tree, metric.at, "metric of the study", check.metric, measured);
+        if (const JsonValue* against = reader.find("against")) {
+            readTexts(tree, *against, "against");
+            for (const JsonValue& name : against->items) check.against.push_back(readEntryName(tree, name, study, "against"));
+        }
+        const std::optional<double> most = reader.number("at-most", -1e9, 1e9), least = reader.number("at-least", -1e9, 1e9);
+        if (most.has_value() == least.has_value()) refuseValue(tree, item, "check", "either \"at-most\" or \"at-least\"");
+        check.atLeast = least.has_value();
+        check.bound = most ? *most : *least;
+        check.onAverage = reader.toggle("on-average").value_or(false);
+        reader.finish();
+        study.checks.push_back(std::move(check));
+    }
+}
+
 void readFigures(const JsonTree& tree, const JsonValue* section, Study& study) {
     if (!section) return;
     if (!section->isArray()) refuseValue(tree, *section, "figures", "an array of figures");

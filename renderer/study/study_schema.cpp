@@ -104,6 +104,19 @@ Json figuresSchema() {
                   "Crops of a picture, as the input, the methods and the reference show them.", 0);
 }
 
+Json checksSchema() {
+    Json bound = {{"type", "number"}, {"description", "Of the value, or of its ratio to each of those it is held against."}};
+    return listOf(closed({{"title", text("The claim in words.")},
+                          {"entry", text("An entry.")},
+                          {"metric", oneOfNames(metricIds(true), "A metric of the study.")},
+                          {"against", listOf(text("An entry's name."), "Entries whose value times the bound is the limit.")},
+                          {"at-most", bound},
+                          {"at-least", bound},
+                          {"on-average", {{"type", "boolean"}, {"description", "Over all scenes together, instead of on each."}}}},
+                         "A claim: at most or at least so much, or so many times another's value.", {"entry", "metric"}),
+                  "Claims that the numbers hold or not; a study whose claims fail ends with exit code 1.", 0);
+}
+
 /// What a preset may change.
 Json bodySchema() {
     Json all;
@@ -137,6 +150,7 @@ Json bodySchema() {
                           "Equal time, equal error and equivalent samples between entries.", 0);
     all["ablations"] = ablationsSchema();
     all["figures"] = figuresSchema();
+    all["checks"] = checksSchema();
     all["intervals"] = closed({{"level", {{"type", "number"}, {"minimum", 0.5}, {"maximum", 0.9999}, {"default", 0.95}}},
                                {"units", oneOfNames({"seeds", "frames-and-seeds"}, "What counts as an independent measurement.")},
                                {"method", oneOfNames({"student-t", "bootstrap"}, "How intervals are found.")}},

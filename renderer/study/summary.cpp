@@ -96,6 +96,7 @@ void addEquivalents(const Study& study, const StudyPlan& plan, const StudyRowInd
                     for (const std::string& metric : study.metrics) {
                         if (study.entries[plan.methods[method].entry].name != pair.entry ||
                             study.entries[plan.methods[other].entry].name != pair.against || scene == kAllScenes ||
+                            plan.methods[method].whole || plan.methods[other].whole ||
                             !isSquaredError(metric))
                             continue;
                         const std::vector<SeedCurve> own = seedCurves(study, rows, scene, method, metric);

@@ -100,6 +100,17 @@ class Results(StudyTest):
         self.assertAlmostEqual(effect["difference"]["mean"], effect["without"]["mean"] - effect["whole"]["mean"], 12)
         self.assertEqual({a["stage"] for a in times["ablations"]}, {"history"})
 
+    def test_claims_decide_the_exit_code(self):
+        good = [{"title": "the mean is better", "entry": "mean", "metric": "mse", "against": ["raw"], "at-most": 0.8}]
+        result = self.study(self.write(checks=good), "--out", "out")
+        self.assertIn("the mean is better", result.out)
+        self.assertEqual({c["verdict"] for c in json.loads(self.bytes("out/results.json"))["checks"]} - {"holds", "holds within the noise"}, set())
+        bad = self.run_program("study", self.write(checks=good + [{"entry": "raw", "metric": "ssim", "at-least": 0.99}]), "--out", "out",
+                               **self.environment())
+        self.assertEqual(bad.code, 1, bad.err)
+        self.assertRegex(bad.out, r"SSIM of raw at least 0.99 +cornell .* fails")
+        self.assertIn("0 jobs run, ", bad.err)
+
     def test_figures_and_tables_for_the_paper(self):
         name = self.write()
         self.study(name, "--out", "out")

@@ -22,6 +22,7 @@ STUDY = {
     "sweep": {"axes": {"max-samples": [1, 2], "path.roulette-depth": [2, 4]}, "entries": ["limited"]},
     "pairs": [{"entry": "mean", "against": "raw"}],
     "ablations": [{"entry": "mean", "stages": [{"name": "all but one", "set": {"limit": True, "max-samples": 1}}]}],
+    "checks": [{"title": "The mean is better", "entry": "mean", "metric": "mse", "against": ["raw"], "at-most": 1}],
     "figures": [{"name": "strip", "entries": ["raw", "mean"], "crops": [{"name": "box", "box": [0.3, 0.4, 0.25, 0.3]},
                                                                           {"box": [0.6, 0.1, 0.2, 0.2]}]}],
 }
@@ -39,13 +40,14 @@ def make_report():
 
 def test_everything_is_there(browser):
     count = lambda selector: browser.value(f"document.querySelectorAll({json.dumps(selector)}).length")
-    for section in ("tables", "convergence", "sweep", "frames", "figures", "pictures", "bias", "ablations", "times", "latex", "method"):
+    for section in ("checks", "tables", "convergence", "sweep", "frames", "figures", "pictures", "bias", "ablations", "times", "latex", "method"):
         assert count(f"h2#{section}") == 1, f"no section {section}"
     assert count("#tables ~ .card table, section table") >= 4
+    assert count(".verdict") == 3 and count(".verdict.fails") == 0
     # Two metrics of images: two convergence plots with three points of each entry. A heat map for each metric and sample count.
-    assert browser.value("document.querySelectorAll('section')[1].querySelectorAll('svg').length") == 2
-    assert browser.value("[...document.querySelectorAll('section')[1].querySelectorAll('svg')].every(s => s.querySelectorAll('circle').length >= 18)")
-    assert browser.value("document.querySelectorAll('section')[2].querySelectorAll('svg rect').length") == 3 * 3 * 4
+    assert browser.value("document.querySelector('#convergence').parentElement.querySelectorAll('svg').length") == 2
+    assert browser.value("[...document.querySelector('#convergence').parentElement.querySelectorAll('svg')].every(s => s.querySelectorAll('circle').length >= 18)")
+    assert browser.value("document.querySelector('#sweep').parentElement.querySelectorAll('svg rect').length") == 3 * 3 * 4
     # Two entries, four points of the sweep, one without a stage, and the reference.
     assert count(".viewer") == 2 and count(".viewer .tile") == 2 * 8
     # An inset strip: two methods and the reference, two crops, maps, the bar.

@@ -13,9 +13,9 @@ function shown(value, digits = 3) {
   if (size >= 1e5 || size < 1e-3) {
     const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
     const raised = String(Number(exponent)).replace(/[-0-9]/g, c => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]);
-    return `${mantissa}·10${raised}`;
+    return `${mantissa}·10${raised}`.replace("-", "−");
   }
-  return value.toFixed(Math.max(0, digits - 1 - Math.floor(Math.log10(size))));
+  return value.toFixed(Math.max(0, digits - 1 - Math.floor(Math.log10(size)))).replace("-", "−");
 }
 
 /** A half-width with as many decimals as its number has, or as it takes to see it. */
@@ -55,7 +55,7 @@ function axisScale(values, log, from, to, includeZero = false) {
 }
 
 /** Lines with intervals. series: [{name, colour, points: [{x, y, low, high}]}]; guide: slope of a dashed line in log-log. */
-function lineChart({ series, xLabel, yLabel, xLog, yLog, xTicks, guide, height = 290 }) {
+function lineChart({ series, xLabel, yLabel, xLog, yLog, xTicks, xWhole, guide, height = 290 }) {
   const width = 520, box = { left: 62, right: width - 12, top: 14, bottom: height - 44 };
   const usable = p => Number.isFinite(p.y) && (!yLog || p.y > 0);
   const points = series.flatMap(s => s.points).filter(usable);
@@ -67,7 +67,7 @@ function lineChart({ series, xLabel, yLabel, xLog, yLog, xTicks, guide, height =
   for (const tick of y.ticks)
     out += `<line class="grid" x1="${box.left}" x2="${box.right}" y1="${y.at(tick)}" y2="${y.at(tick)}"/>` +
       `<text x="${box.left - 8}" y="${y.at(tick) + 4}" text-anchor="end">${shown(tick, 2)}</text>`;
-  for (const tick of xTicks || x.ticks)
+  for (const tick of xTicks || (xWhole ? x.ticks.filter(Number.isInteger) : x.ticks))
     out += `<line class="axis" x1="${x.at(tick)}" x2="${x.at(tick)}" y1="${box.bottom}" y2="${box.bottom + 4}"/>` +
       `<text x="${x.at(tick)}" y="${box.bottom + 18}" text-anchor="middle">${Number.isInteger(tick) ? tick : shown(tick, 2)}</text>`;
   out += `<line class="axis" x1="${box.left}" x2="${box.right}" y1="${box.bottom}" y2="${box.bottom}"/>` +
@@ -96,9 +96,12 @@ function lineChart({ series, xLabel, yLabel, xLog, yLog, xTicks, guide, height =
 }
 lineChart.count = 0;
 
+/** A method's name without the ids of what is swept: "svgf [4, true]". */
+const shortName = name => name.replace(/\[.*\]/, part => part.replace(/[\w.-]+=/g, ""));
+
 /** Horizontal stacked bars. rows: [{name, parts: [{name, value, colour}], note}]. */
 function barChart({ rows, unit }) {
-  const width = 1040, rowHeight = 30, left = Math.min(260, 20 + 7 * Math.max(...rows.map(r => r.name.length))), right = width - 120;
+  const width = 1040, rowHeight = 30, left = 20 + 7.3 * Math.max(...rows.map(r => Math.min(r.name.length, 44))), right = width - 120;
   const total = row => row.parts.reduce((sum, p) => sum + Math.max(p.value, 0), 0);
   const most = Math.max(...rows.map(total), 1e-9);
   const x = axisScale([0, most], false, left, right, true);
@@ -110,7 +113,7 @@ function barChart({ rows, unit }) {
   rows.forEach((row, i) => {
     const y = i * rowHeight + 5;
     let at = 0;
-    out += `<text class="label" x="${left - 10}" y="${y + 14}" text-anchor="end">${escapeText(row.name)}</text>`;
+    out += `<text class="label" x="${left - 10}" y="${y + 14}" text-anchor="end">${escapeText(row.name.length > 44 ? row.name.slice(0, 43) + "…" : row.name)}<title>${escapeText(row.name)}</title></text>`;
     for (const part of row.parts) {
       const value = Math.max(part.value, 0);
       out += `<rect x="${x.at(at)}" y="${y}" width="${Math.max(x.at(at + value) - x.at(at), 0)}" height="20" rx="2" fill="${part.colour}">` +

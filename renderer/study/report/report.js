@@ -28,7 +28,7 @@ const interval = (r, unit = "") => r.mean === null || r.mean === undefined ? "�
   : `${shown(r.mean, 4)}${unit}<span class="pm">${half(r) === null ? "" : `± ${shownHalf(half(r), r.mean)}`}</span>`;
 /** A difference: marked where the interval tells it from none. */
 const isSure = r => r.low !== null && (r.low > 0 || r.high < 0);
-const difference = (r, unit = "") => r.mean === null ? "–" : `<span class="${isSure(r) ? "sure" : ""}">${r.mean > 0 ? "+" : ""}${shown(r.mean, 3).replace("-", "−")}${unit}</span>` +
+const difference = (r, unit = "") => r.mean === null ? "–" : `<span class="${isSure(r) ? "sure" : ""}">${r.mean > 0 ? "+" : ""}${shown(r.mean, 3)}${unit}</span>` +
   `<span class="pm">${half(r) === null ? "" : `± ${shownHalf(half(r), r.mean, 3)}`}</span>`;
 const seedCount = study.seeds.length;
 /** Of how many seeds a number is, where that is not all of them. */
@@ -78,6 +78,17 @@ function addNonFinite(part) {
     "</tbody></table>", "card warning");
 }
 
+/** Claims of the study file, and whether the numbers hold them. */
+function addChecks() {
+  if (!results.checks || !results.checks.length) return;
+  const part = section("checks", "What was claimed", `Against several methods: the one that it holds worst against. "Within the noise": the means are as claimed, but the intervals do not tell it from the contrary.`);
+  const kinds = { "holds": "holds", "holds within the noise": "close", "fails": "fails", "unknown": "close" };
+  part.add(`<table><thead><tr><th>claim</th><th class="text">scene</th>${sampleCounts.length > 1 ? "<th>spp</th>" : ""}<th>value</th><th class="text">against</th><th>ratio</th><th>bound</th><th class="text">verdict</th></tr></thead><tbody>` +
+    results.checks.map(c => `<tr><td class="name claim">${escapeText(c.claim)}</td><td class="text">${escapeText(sceneTitle(c.scene))}</td>${sampleCounts.length > 1 ? `<td>${c.spp}</td>` : ""}<td>${interval(c.value)}</td>` +
+      `<td class="text">${escapeText(c.against || "–")}</td><td>${c.ratio ? interval(c.ratio) : "–"}</td><td>${c.at_most === undefined ? `≥ ${shown(c.at_least)}` : `≤ ${shown(c.at_most)}`}</td>` +
+      `<td class="text"><span class="verdict ${kinds[c.verdict]}">${c.verdict}</span></td></tr>`).join("") + "</tbody></table>");
+}
+
 function addTables() {
   const seeds = study.seeds.length;
   const part = section("tables", "Results", `Means over ${study.frames} and ${seeds} seed${seeds > 1 ? "s" : ""}` + (seeds > 1
@@ -116,7 +127,7 @@ function addFrames() {
   const plots = part.add("", "plots");
   const plot = (scene, spp, title, lines, label) => plots.insertAdjacentHTML("beforeend",
     `<figure class="card"><figcaption>${escapeText(scene)}<small>${escapeText(title)}${sampleCounts.length > 1 ? ` · ${spp} spp` : ""}</small></figcaption>` +
-    lineChart({ series: lines, xLabel: "frame", yLabel: label }) + legend(lines) + "</figure>");
+    lineChart({ series: lines, xLabel: "frame", yLabel: label, xWhole: true }) + legend(lines) + "</figure>");
   for (const scene of scenes.filter(s => s !== "all"))
     for (const spp of sampleCounts) {
       if (frames.length > 2) for (const metric of measured.filter(m => !metrics[m].temporal))

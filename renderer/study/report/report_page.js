@@ -54,6 +54,7 @@ function setTheme(theme) { root.dataset.theme = theme; themeButton.textContent =
 setTheme(matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
 themeButton.addEventListener("click", () => setTheme(root.dataset.theme === "dark" ? "light" : "dark"));
 
+addChecks();
 if (!swept || study.methods.length <= 12) addTables();
 addConvergence();
 addSweep();

@@ -51,7 +51,7 @@ function timeBars(scene) {
   const rows = own.slice(0, 40).map(r => {
     const staged = Object.values(r.stages_ms).reduce((sum, s) => sum + s.mean, 0);
     const value = p => p === "pose" ? r.pose_ms.mean : p === "trace" ? r.trace_ms.mean : p === "rest of the method" ? Math.max(r.run_ms.mean - staged, 0) : r.stages_ms[p] ? r.stages_ms[p].mean : 0;
-    return { name: several ? `${r.entry}, ${r.spp} spp` : r.entry, parts: phases.map((p, i) => ({ name: p, value: value(p), colour: colourOf(i) })),
+    return { name: several ? `${shortName(r.entry)}, ${r.spp} spp` : shortName(r.entry), parts: phases.map((p, i) => ({ name: p, value: value(p), colour: colourOf(i) })),
              note: half(r.frame_ms) === null ? "" : `± ${shownHalf(half(r.frame_ms), r.frame_ms.mean, 3)}` };
   });
   return `<figure><figcaption>${escapeText(scene)}<small>milliseconds a frame</small></figcaption>${barChart({ rows, unit: "ms" })}` +
@@ -67,17 +67,25 @@ function timeTable(scene) {
       `<td>${Math.round(r.rays_per_frame.mean).toLocaleString("en")}</td></tr>`).join("") + "</tbody></table></details>";
 }
 
+/** A table for each pair and scene: what the other reaches in the method's time, and when it reaches its value. */
+function addPairs(part) {
+  const reached = (r, unit) => r.count ? interval(r, unit) + ofSeeds(r) : `<span class="pm">out of range</span>`;
+  const tables = [...new Set(times.pairs.map(p => `${p.scene}\n${p.entry}\n${p.against}`))].map(key => {
+    const [scene, entry, against] = key.split("\n"), own = times.pairs.filter(p => p.scene === scene && p.entry === entry && p.against === against);
+    return `<h3><i class="swatch" style="background:${entryColour(entry)}"></i>${escapeText(entry)} against <i class="swatch" style="background:${entryColour(against)}"></i>${escapeText(against)}<small>${escapeText(scene)}</small></h3>` +
+      `<table><thead><tr><th>metric</th><th>spp</th><th>a frame</th><th>its value</th><th>the other's at equal time</th><th>difference</th><th>time for equal value</th><th>times as long</th></tr></thead><tbody>` +
+      own.map(p => `<tr><td>${metrics[p.metric].title}</td><td>${p.spp}</td><td>${interval(p.frame_ms, " ms")}</td><td>${interval(p.value)}</td><td>${reached(p.against_at_equal_time)}</td>` +
+        `<td>${p.against_at_equal_time.count ? difference(p.difference_at_equal_time) : "–"}</td><td>${reached(p.against_ms_at_equal_value, " ms")}</td>` +
+        `<td>${p.against_ms_at_equal_value.count ? interval(p.times_as_long) : "–"}</td></tr>`).join("") + "</tbody></table>";
+  });
+  part.add(`<h3>Equal time and equal error</h3>${tables.join("")}<p class="note">Between the other's sample counts, seed by seed, by straight lines in log-log space. Differences in bold are told from none.</p>`);
+}
+
 function addTimes() {
   if (!times.rows.length) return;
   const part = section("times", "Times", "Wall-clock medians of a frame on the machine that ran the study: posing, tracing, then the method's stages. They differ from run to run; nothing else in this report does.");
   for (const scene of scenes.filter(s => s !== "all")) part.add(timeBars(scene) + timeTable(scene));
-  if (times.pairs.length) part.add(`<h3>Equal time and equal error</h3><table><thead><tr><th>method</th><th class="text">scene</th><th>spp</th><th>a frame</th><th class="text">metric</th><th>its value</th>` +
-    `<th class="text">against</th><th>at equal time</th><th>difference</th><th>time for equal value</th><th>times as long</th></tr></thead><tbody>` + times.pairs.map(p => {
-      const time = p.against_at_equal_time, error = p.against_ms_at_equal_value;
-      return `<tr>${entryCell(p.entry)}<td class="text">${escapeText(p.scene)}</td><td>${p.spp}</td><td>${interval(p.frame_ms, " ms")}</td><td class="text">${metrics[p.metric].title}</td>` +
-        `<td>${interval(p.value)}</td><td class="text">${escapeText(p.against)}</td><td>${time.count ? interval(time) + ofSeeds(time) : `<span class="pm">out of range</span>`}</td>` +
-        `<td>${time.count ? difference(p.difference_at_equal_time) : "–"}</td><td>${error.count ? interval(error, " ms") + ofSeeds(error) : `<span class="pm">out of range</span>`}</td><td>${error.count ? interval(p.times_as_long) : "–"}</td></tr>`;
-    }).join("") + `</tbody></table><p class="note">Between the other's sample counts, seed by seed, by straight lines in log-log space. Differences in bold are told from none.</p>`);
+  if (times.pairs.length) addPairs(part);
   if (results.equivalent_samples) part.add(`<h3>Equivalent samples</h3><table><thead><tr><th>method</th><th class="text">scene</th><th>spp</th><th class="text">metric</th><th class="text">is worth</th><th>samples</th></tr></thead><tbody>` +
     results.equivalent_samples.map(e => `<tr>${entryCell(e.entry)}<td class="text">${escapeText(e.scene)}</td><td>${e.spp}</td><td class="text">${metrics[e.metric].title}</td><td class="text">${escapeText(e.against)} at</td>` +
       `<td>${interval(e.equivalent_spp)}${ofSeeds(e.equivalent_spp)}${e.extrapolated ? `<span class="pm">extrapolated</span>` : ""}</td></tr>`).join("") + "</tbody></table>");

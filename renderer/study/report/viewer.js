@@ -20,8 +20,10 @@ class Viewer {
   constructor(root, set) {
     this.set = set, this.wipe = 0.5, this.mode = "wipe", this.flipped = false, this.errors = false;
     const methods = set.images.filter(i => i.kind === "method"), reference = set.images.find(i => i.kind === "reference");
-    this.left = (methods[0] || reference).name;
-    this.right = (methods.length > 1 ? methods[methods.length - 1] : reference).name;
+    // Whole methods to begin with; those without a stage are a click away.
+    const whole = methods.filter(i => !study.methods.some(m => m.name === i.name && m.stage));
+    this.left = (whole[0] || reference).name;
+    this.right = (whole.length > 1 ? whole[whole.length - 1] : reference).name;
     root.innerHTML = `
       <div class="bar"><h3>${escapeText(set.scene)}<small>frame ${set.frame} · ${set.spp} spp · ${set.width}×${set.height}</small></h3>
         <select class="left-select" aria-label="Left picture"></select><select class="right-select" aria-label="Right picture"></select>
@@ -54,7 +56,7 @@ class Viewer {
       const tile = document.createElement("button");
       tile.className = "tile", tile.dataset.name = image.name, tile.title = "Click: on the right; Shift+click: on the left";
       tile.innerHTML = `<span class="frame" style="aspect-ratio:${this.set.width}/${this.set.height}"><img alt="${escapeText(image.name)}"></span>` +
-        `<span class="caption">${escapeText(image.name)}</span>`;
+        `<span class="caption" title="${escapeText(image.name)}">${escapeText(shortName(image.name))}</span>`;
       tile.addEventListener("click", event => { this[event.shiftKey ? "left" : "right"] = image.name; this.show(); });
       tiles.append(tile);
     }

@@ -171,6 +171,38 @@ TEST(Results, AblationsArePairedDifferences) {
     EXPECT_EQ(all.rankings[0].places.size(), 2u);
 }
 
+/// Claims are judged by paired differences to the bound; "a" has about half the error of "b", whatever the sample count.
+TEST(Results, ClaimsHoldOrNotOrNobodyKnows) {
+    Sample s = sample();
+    for (StudyRow& row : s.records.rows) row.frame = -1;
+    const auto claim = [&](const std::string& entry, const std::string& metric, const std::vector<std::string>& against, double bound, bool atLeast = false) {
+        StudyCheck check;
+        check.entry = entry, check.metric = metric, check.against = against, check.bound = bound, check.atLeast = atLeast;
+        s.study.checks = {check};
+        return checkClaims(s.study, s.plan, s.records);
+    };
+    using Verdict = StudyCheckResult::Verdict;
+    const std::string b = s.study.entries[1].name;
+    std::vector<StudyCheckResult> results = claim("a", "mse", {b}, 0.6);
+    ASSERT_EQ(results.size(), 2u * 3) << "each scene, each sample count";
+    for (const StudyCheckResult& result : results) {
+        EXPECT_EQ(result.verdict, Verdict::Holds);
+        EXPECT_NEAR(result.ratio.mean, 1.02 / 2.02, 1e-9);
+        EXPECT_TRUE(result.ratio.low < result.ratio.mean && result.ratio.mean < result.ratio.high);
+        EXPECT_EQ(result.against, b);
+    }
+    EXPECT_EQ(claim("a", "mse", {b}, 0.5)[0].verdict, Verdict::Fails);
+    EXPECT_EQ(claim("a", "mse", {b}, 1.02 / 2.02 + 1e-9)[0].verdict, Verdict::WithinNoise) << "right at the bound nothing tells";
+    EXPECT_EQ(claim("a", "ssim", {b}, 1, true)[0].verdict, Verdict::Holds);
+    EXPECT_EQ(claim(b, "ssim", {"a"}, 1, true)[0].verdict, Verdict::Fails);
+    EXPECT_EQ(claim("a", "mse", {}, 1.1)[0].verdict, Verdict::Holds) << "a bound of its own";
+    EXPECT_EQ(claim("a", "mse", {}, 0.9)[0].verdict, Verdict::Fails);
+    s.study.checks[0].onAverage = true;
+    EXPECT_EQ(checkClaims(s.study, s.plan, s.records).size(), 3u);
+    for (StudyRow& row : s.records.rows) row.corrected.clear(), row.metrics["mse"] = NAN;
+    EXPECT_EQ(claim("a", "mse", {b}, 2)[0].verdict, Verdict::Unknown) << "no value holds nothing";
+}
+
 TEST(Results, JsonHoldsNoNumberThatJsonCannot) {
     Sample s = sample();
     for (StudyRow& row : s.records.rows) row.frame = -1;

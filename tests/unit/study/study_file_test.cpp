@@ -42,6 +42,7 @@ TEST(StudyFile, EverythingIsRead) {
       "entries": [{"name": "a", "module": "accumulate", "set": {"limit": true, "path.clamp": false}, "tune": {"max-samples": [2, 4]}},
                   {"module": "none", "spp": 2}],
       "sweep": {"axes": {"component": ["direct", "indirect"]}, "entries": ["none"]},
+      "checks": [{"title": "C", "entry": "a", "metric": "mse", "against": ["none"], "at-most": 1.03, "on-average": true}],
       "metric-settings": {"relmse-epsilon": 0.01, "hdr-flip-exposures": [-2, 3]},
       "pairs": [{"entry": "a", "against": "none"}],
       "ablations": [{"entry": "a", "stages": [{"name": "limit", "set": {"limit": false}}]}],
@@ -59,6 +60,8 @@ TEST(StudyFile, EverythingIsRead) {
     EXPECT_EQ(study.entries[1].spp, std::vector<int>{2});
     EXPECT_EQ(study.sweep->axes[0].id, "component");
     EXPECT_EQ(study.tuning->seed, 5);
+    EXPECT_EQ(study.checks.at(0).bound, 1.03);
+    EXPECT_TRUE(study.checks.at(0).onAverage && !study.checks.at(0).atLeast);
     EXPECT_EQ(study.metricSettings.relMseEpsilon, 0.01);
     EXPECT_EQ(*study.metricSettings.flipExposures, FlipExposures::over(-2, 3));
     EXPECT_EQ(study.frames.step->frame, 20);
@@ -136,9 +139,41 @@ TEST(StudyFile, StepsAblationsAndFiguresAreChecked) {
     refused(figure(R"("crops": [{"box": [0, 0, 1, 1]}], "scene": "cornel")"), {"unknown scene \"cornel\"", "\"cornell\""});
     refused(figure(R"("crops": [{"box": [0, 0, 1, 1]}], "metric": "psnr2")"), {"unknown metric with a map"});
     refused(figure(R"("crops": [{"box": [0, 0, 1, 1]}], "frame": 3)"), {"\"frame\""});
+    refused(member(R"("checks": [{"entry": "none", "metric": "rmse"}])"), {"either \"at-most\" or \"at-least\""});
+    refused(member(R"("checks": [{"entry": "none", "metric": "ssim", "at-least": 1}])"), {"unknown metric of the study \"ssim\""});
+    refused(member(R"("checks": [{"entry": "none", "metric": "rmse", "at-most": 1, "against": ["nonne"]}])"), {"unknown entry", "\"none\""});
     refused(member(R"("metric-settings": {"relmse-epsilon": 0})"), {"\"relmse-epsilon\" is 0"});
     refused(member(R"("metric-settings": {"hdr-flip-exposures": [3, -2]})"), {"\"hdr-flip-exposures\"", "[start, stop]"});
     refused(member(R"("figures": [{"name": "a b", "crops": [{"box": [0,0,1,1]}]}, {"name": "a-b", "crops": [{"box": [0,0,1,1]}]}])"), {"two figures are called"});
+}
+
+/// The shape of a paper's table: scenes with parameters, one of which may be missing, baselines that are tuned on a frame that
+/// is not measured, a fixed view's flicker, times of every phase at several budgets, claims, and stages switched off.
+TEST(StudyFile, CarriesAPapersTablesAndFigures) {
+    const Study table = parse(R"({"version": 1, "title": "Table", "paper": "Schied17",
+      "scenes": ["atrium", {"scene": "assets:no/Sponza.gltf", "name": "sponza", "optional": true, "set": {"camera.select": "hall"}},
+                 {"scene": "room", "name": "room-720", "set": {"render.width": 1280, "render.height": 720}}],
+      "set": {"sampler.kind": "halton", "sampler.halton-loop": 16, "path.max-depth": 2},
+      "frames": {"range": [0, 33], "measure": [24, 28, 32]}, "seeds": [1, 2, 3], "tuning": {"frame": 16, "metric": "ssim", "seed": 77},
+      "entries": [{"name": "svgf", "module": "svgf"}, {"name": "raw", "module": "none", "spp": [1, 2, 4]},
+                  {"name": "eaw", "module": "eaw", "tune": {"sigma-color": [0.1, 0.4, 1]}},
+                  {"name": "temporal", "module": "temporal"}],
+      "checks": [{"entry": "svgf", "metric": "ssim", "against": ["raw", "eaw", "temporal"], "at-least": 1},
+                 {"entry": "svgf", "metric": "rmse", "against": ["raw", "eaw", "temporal"], "at-most": 1.03},
+                 {"entry": "svgf", "metric": "rmse", "against": ["raw", "eaw", "temporal"], "at-most": 1, "on-average": true}],
+      "ablations": [{"entry": "svgf", "stages": [{"name": "variance prefilter", "set": {"variance-prefilter": false}}]}],
+      "pairs": [{"entry": "svgf", "against": "raw"}],
+      "metrics": ["rmse", "ssim", "cpbd", "temporal_reprojected"],
+      "presets": {"quick": {"size": [480, 270], "reference": {"spp": 256}}, "paper": {"size": [1920, 1080], "reference": {"spp": 4096}}}})", "paper");
+    EXPECT_EQ(table.reference.spp, 4096);
+    EXPECT_EQ(table.entries[1].spp, (std::vector<int>{1, 2, 4}));
+    EXPECT_TRUE(table.scenes[1].optional);
+    EXPECT_EQ(table.checks.size(), 3u);
+    const Study flicker = parse(R"({"version": 1, "scenes": ["atrium"], "frames": {"range": [0, 60], "still": true, "temporal": [20, 60]},
+      "entries": [{"name": "svgf", "module": "svgf"}, {"name": "plain", "module": "svgf", "set": {"color-alpha": 1, "moments-alpha": 1}}],
+      "checks": [{"entry": "svgf", "metric": "temporal", "against": ["plain"], "at-most": 0.2}], "metrics": ["temporal"]})");
+    EXPECT_EQ(flicker.frames.temporalBegin, 20);
+    EXPECT_TRUE(flicker.frames.still);
 }
 
 TEST(StudyFile, BrokenJsonIsOneLineWithItsPlace) {

@@ -1,0 +1,31 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "study/summary.h"
+
+namespace lumi {
+
+/// What became of one claim on one scene, at one number of samples.
+struct StudyCheckResult {
+    enum class Verdict { Holds, WithinNoise, Fails, Unknown };
+    size_t check = 0;  ///< index into Study::checks
+    size_t scene = 0;
+    int spp = 1;
+    std::string against;  ///< of several the one that it holds worst against; empty: a bound that stands alone
+    Interval value;       ///< the entry's
+    Interval ratio;       ///< to the other's, where there is one
+    double bound = 0;     ///< of the value or the ratio
+    Verdict verdict = Verdict::Unknown;
+};
+
+/// Holds: as claimed, and the interval of the units' differences to the bound tells so. WithinNoise: as claimed, but the
+/// interval does not tell it from the contrary. Fails: the means are not as claimed. Unknown: there is no value.
+std::vector<StudyCheckResult> checkClaims(const Study& study, const StudyPlan& plan, const StudyRecords& records);
+
+/// "holds", "holds within the noise", "fails", "unknown".
+const char* verdictText(StudyCheckResult::Verdict verdict);
+/// The claim in words: its own, or "rmse of svgf at most 1.03 times eaw's".
+std::string claimText(const StudyCheck& check);
+
+}  // namespace lumi
