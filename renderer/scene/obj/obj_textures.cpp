@@ -130,7 +130,7 @@ std::shared_ptr<TextureImage> ObjImages::normalsFromBump(const std::string& name
     const Image8* image = find(name);
     if (!image) return nullptr;
     if (!isGrey(*image)) return plain(name, false);
-    const auto [width, height] = image->extent;
+    const int width = image->extent.width, height = image->extent.height;  // clang 14 captures no structured bindings
     const auto heightAt = [&](int x, int y) {
         const int wx = (x + width) % width, wy = (y + height) % height;
         return multiplier * static_cast<float>(image->rgba[static_cast<size_t>(4 * (int64_t(wy) * width + wx))]) / 255;
