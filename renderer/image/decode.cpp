@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "image/jpeg_guard.h"
 
 // Private to this file: other libraries of the program carry their own copy.
 #define STB_IMAGE_STATIC
@@ -45,6 +46,7 @@ int lengthOf(std::span<const uint8_t> bytes, const std::string& name) {
 }  // namespace
 
 Extent2 encodedExtent(std::span<const uint8_t> bytes, const std::string& name) {
+    checkJpegTables(bytes, name);
     Extent2 extent;
     int channels = 0;
     if (!stbi_info_from_memory(bytes.data(), lengthOf(bytes, name), &extent.width, &extent.height, &channels))

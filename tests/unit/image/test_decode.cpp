@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "base/error.h"
 #include "base/files.h"
 #include "image/decode.h"
 #include "image/hdr.h"
@@ -29,6 +30,22 @@ TEST(Decode, KnowsFormatsByTheirContents) {
     EXPECT_EQ(bmp.extent, (Extent2{2, 1}));
     EXPECT_EQ(bmp.rgba, (std::vector<uint8_t>{1, 2, 3, 255, 4, 5, 6, 255}));
     EXPECT_EQ(encodedExtent(smallBmp(), "small.bmp"), (Extent2{2, 1}));
+}
+
+TEST(Decode, JpegTablesThatOverflowAreRefused) {
+    // A comment, then a table whose 16 counts add up to 257; the size of the segment lies.
+    std::vector<uint8_t> jpeg = {0xFF, 0xD8, 0xFF, 0xFE, 0, 4, 0xFF, 0xC4, 0xFF, 0xFF, 0xC4, 0, 19, 0x11};
+    for (int i = 0; i < 16; ++i) jpeg.push_back(i < 2 ? 128 : i == 2);
+    jpeg.resize(400);
+    for (const bool overflows : {true, false}) {
+        jpeg[16] = overflows;
+        try {
+            decodeImage8(jpeg, "a.jpg");
+            ADD_FAILURE() << "no image";
+        } catch (const Error& error) {
+            EXPECT_EQ(std::string(error.what()).find("257") != std::string::npos, overflows) << error.what();
+        }
+    }
 }
 
 TEST(Decode, DamageIsRefusedByName) {
