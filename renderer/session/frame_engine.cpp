@@ -1,7 +1,6 @@
 #include "session/frame_engine.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 
 #include "base/error.h"
@@ -161,17 +160,6 @@ FrameSampling FrameEngine::sampling(const FrameRequest& request, const Completed
     return sampling;
 }
 
-std::shared_ptr<Signals> FrameEngine::freeSignals() {
-    for (const std::shared_ptr<Signals>& signals : pool_) {
-        if (signals.use_count() != 1) continue;
-        // Another thread let go of them: what it read comes before what is written now.
-        std::atomic_thread_fence(std::memory_order_acquire);
-        return signals;
-    }
-    pool_.push_back(std::make_shared<Signals>());
-    return pool_.back();
-}
-
 void FrameEngine::bind(const std::shared_ptr<const PosedScene>& posed) {
     if (bound_ == posed) return;
     bound_ = nullptr;  // if building fails, the next frame builds again
@@ -196,7 +184,7 @@ bool FrameEngine::traceSignals(const FrameRequest& request, const CameraPose& pr
         }
     }
     const auto measured = timer.measure("trace");
-    const std::shared_ptr<Signals> signals = freeSignals();
+    const std::shared_ptr<Signals> signals = pool_.take();
     tracer_.resetCounts();
     if (!tracer_.sample(asked, *signals, stop)) return false;
     next.signals = signals;
@@ -266,7 +254,7 @@ bool FrameEngine::canRepeat(FrameNumber frame) const {
 
 size_t FrameEngine::byteCount() const {
     size_t bytes = tracer_.byteCount();
-    for (const auto& signals : pool_) bytes += signals->bytes();
+    bytes += pool_.byteCount() + previewPool_.byteCount();
     for (const auto& [name, current] : instances_) bytes += current.module->byteCount();
     return bytes;
 }

@@ -11,6 +11,7 @@
 #include "session/changes.h"
 #include "session/document.h"
 #include "session/signals_check.h"
+#include "session/signals_pool.h"
 #include "trace/tracer.h"
 
 namespace lumi {
@@ -118,16 +119,14 @@ private:
     bool runModules(const FrameRequest& request, const Completed& next, const CameraPose& previousCamera, FrameOutput& frame,
                     StageTimer& timer, std::stop_token stop);
     bool runModule(const std::string& name, const FrameContext& context, Image& out, FrameOutput& frame);
-    std::shared_ptr<Signals> freeSignals();
 
     MessageLog& log_;
     OnModuleError onError_;
     Tracer tracer_;
     std::shared_ptr<const PosedScene> bound_;
     std::shared_ptr<const PosedScene> previewed_;  ///< of the last preview
-    std::shared_ptr<Signals> previewSignals_;
     Instances instances_, fresh_;
-    std::vector<std::shared_ptr<Signals>> pool_;  ///< those that nobody else holds are used again
+    SignalsPool pool_, previewPool_;
     std::optional<Completed> before_, current_;
 };
 

@@ -20,17 +20,17 @@ std::optional<FrameOutput> FrameEngine::preview(const Document& document, Extent
     sampling.path = document.path();
     sampling.wanted = shownSignals(document);
     sampling.wanted.add(Signal::Noisy);
-    if (!previewSignals_ || previewSignals_.use_count() != 1) previewSignals_ = std::make_shared<Signals>();
+    const std::shared_ptr<Signals> signals = previewPool_.take();
     tracer_.resetCounts();
     Timer tracing;
-    if (!tracer_.sample(sampling, *previewSignals_, stop)) return std::nullopt;
+    if (!tracer_.sample(sampling, *signals, stop)) return std::nullopt;
 
     FrameOutput frame;
     frame.time = time;
     frame.camera = sampling.camera;
     frame.scene = previewed_;
-    frame.signals = previewSignals_;
-    const auto raw = std::make_shared<Image>((*previewSignals_)[Signal::Noisy]);
+    frame.signals = signals;
+    const auto raw = std::make_shared<Image>((*signals)[Signal::Noisy]);
     for (const std::string& name : document.activeInstances()) frame.results[name] = raw;
     frame.rays = tracer_.counts();
     frame.stagesMs = {{"trace", tracing.elapsedMs()}};
