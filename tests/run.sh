@@ -2,6 +2,9 @@
 # Installs what is missing, builds everything with warnings as errors, and runs the whole suite; then builds the image
 # code and the loaders again with the address and undefined-behaviour sanitizers and feeds them damaged files. By hand, the
 # same for any other test:  cmake --preset asan-ubsan && cmake --build --preset asan-ubsan --target test_scene test_session
+# Threads, by hand:  cmake --preset tsan && cmake --build --preset tsan --target test_session &&
+#   TSAN_OPTIONS=suppressions=$PWD/tests/sanitizers/tsan.supp build/tsan/bin/test_session
+# Fuzzing, by hand:  tests/fuzz/run.sh --seconds 600
 #   ./tests/run.sh [--quick]     --quick leaves the sanitizers out
 set -euo pipefail
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
