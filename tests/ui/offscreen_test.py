@@ -358,6 +358,28 @@ shot sponza
     assert report["ui_ms"]["p99"] < 8, report["ui_ms"]
 
 
+def test_a_pinned_pixel_tells_what_made_it():
+    out, _ = view("lineage", """
+wait-load
+set view.0.module svgf
+wait-frames 4
+mouse 400 400
+press left
+release left
+wait-frames 2
+dump-lineage pinned
+shot pinned
+""")
+    lineage = json.loads((out / "pinned.json").read_text())["svgf"]
+    stages = {}
+    for row in lineage["rows"]:
+        stages[row["stage"]] = stages.get(row["stage"], 0) + row["weight"]
+    expected = {"history"} | {f"{light}, level {n}" for light in ("direct", "indirect") for n in range(1, 6)}
+    assert set(stages) == expected, stages
+    assert all(abs(sum - 1) < 1e-4 for sum in stages.values()), stages
+    assert {"verdict", "at"} <= set(lineage["rows"][0]), lineage["rows"][0]
+
+
 def test_mistakes_are_named():
     _, text = view("mistake-1", "wait-load\nshoot a\n", code=3)
     assert "script.txt:2" in text and "shot" in text, text
