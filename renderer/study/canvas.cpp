@@ -11,6 +11,8 @@
 namespace lumi {
 namespace {
 
+constexpr Colour8 kHalo{16, 17, 18};
+
 std::string hexColour(Colour8 colour) { return fmt::format("#{:02x}{:02x}{:02x}", colour.r, colour.g, colour.b); }
 
 int rounded(double value) { return static_cast<int>(std::lround(value)); }
@@ -67,6 +69,9 @@ void drawText(Image8& image, const Canvas::Text& text, double scale) {
     if (!font) return;
     const double width = font->width(text.text, text.size * scale);
     const double shift = text.align == Canvas::Align::Left ? 0 : text.align == Canvas::Align::Middle ? width / 2 : width;
+    for (int y = -1; y <= 1 && text.halo; ++y)
+        for (int x = -1; x <= 1; ++x)
+            font->draw(image, (text.x + x) * scale - shift, (text.baseline + y) * scale, text.size * scale, text.text, kHalo);
     font->draw(image, text.x * scale - shift, text.baseline * scale, text.size * scale, text.text, text.colour);
 }
 
@@ -110,8 +115,9 @@ std::string svgOf(const Canvas& canvas) {
                            hexColour(box.colour), box.line);
     for (const Canvas::Text& text : canvas.texts) {
         const char* anchor = text.align == Canvas::Align::Left ? "start" : text.align == Canvas::Align::Middle ? "middle" : "end";
-        out += fmt::format("<text x=\"{:g}\" y=\"{:g}\" font-size=\"{:g}\" text-anchor=\"{}\" fill=\"{}\"{}>{}</text>\n", text.x,
+        out += fmt::format("<text x=\"{:g}\" y=\"{:g}\" font-size=\"{:g}\" text-anchor=\"{}\" fill=\"{}\"{}{}>{}</text>\n", text.x,
                            text.baseline, text.size, anchor, hexColour(text.colour), text.strong ? " font-weight=\"600\"" : "",
+                           text.halo ? fmt::format(" stroke=\"{}\" stroke-width=\"2.4\" stroke-linejoin=\"round\" paint-order=\"stroke\"", hexColour(kHalo)) : "",
                            escapedMarkup(text.text));
     }
     return out + "</svg>\n";

@@ -28,6 +28,7 @@ struct Canvas {
         bool strong = false;
         Align align = Align::Left;
         Colour8 colour{27, 28, 30};
+        bool halo = false;  ///< dark around the letters, to be read on pictures
     };
 
     double width = 0, height = 0;

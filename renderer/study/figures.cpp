@@ -81,7 +81,7 @@ void addPicture(const StudyFigure& figure, const Study& study, const FigureConte
                                    box.height * sx + 2 * kLine, kCropColours[i], kLine});
         if (!figure.crops[i].name.empty())
             canvas.texts.push_back({kMargin + box.x * sx - kLine, top + box.y * sx - kLine - 4, figure.crops[i].name, kTextSize, true,
-                                    Canvas::Align::Left, kCropColours[i]});
+                                    Canvas::Align::Left, kCropColours[i], true});
     }
 }
 

@@ -99,6 +99,10 @@ lineChart.count = 0;
 /** A method's name without the ids of what is swept: "svgf [4, true]". */
 const shortName = name => name.replace(/\[.*\]/, part => part.replace(/[\w.-]+=/g, ""));
 
+/** The name in full, or short where the page is narrow. */
+const nameMarkup = name => shortName(name) === name ? escapeText(name)
+  : `<span class="wide">${escapeText(name)}</span><span class="narrow" title="${escapeText(name)}">${escapeText(shortName(name))}</span>`;
+
 /** Horizontal stacked bars. rows: [{name, parts: [{name, value, colour}], note}]. */
 function barChart({ rows, unit }) {
   const width = 1040, rowHeight = 30, left = 20 + 7.3 * Math.max(...rows.map(r => Math.min(r.name.length, 44))), right = width - 120;

@@ -55,7 +55,7 @@ function tableByMetric(scene, spp) {
   const rows = entries.filter(e => find(results.summary, { scene, spp, entry: e }));
   return `<h3>${escapeText(sceneTitle(scene))}${sampleCounts.length > 1 ? ` · ${spp} spp` : ""}</h3><table><thead><tr><th></th>` +
     shownMetrics.map(m => `<th>${metricTitle(m)}</th>`).join("") + "</tr></thead><tbody>" +
-    rows.map(e => `<tr><td class="name"><i class="swatch" style="background:${entryColour(e)}"></i>${escapeText(e)}</td>` +
+    rows.map(e => `<tr><td class="name"><i class="swatch" style="background:${entryColour(e)}"></i>${nameMarkup(e)}</td>` +
       shownMetrics.map(m => cell({ scene, entry: e, spp, metric: m })).join("") + "</tr>").join("") + "</tbody></table>";
 }
 
@@ -64,7 +64,7 @@ function tableBySamples(scene, metric) {
   const rows = entries.filter(e => find(results.summary, { scene, entry: e, metric }));
   return `<h3>${escapeText(sceneTitle(scene))} · ${metricTitle(metric)}</h3><table><thead><tr><th>samples a pixel</th>` +
     sampleCounts.map(s => `<th>${s}</th>`).join("") + "</tr></thead><tbody>" +
-    rows.map(e => `<tr><td class="name"><i class="swatch" style="background:${entryColour(e)}"></i>${escapeText(e)}</td>` +
+    rows.map(e => `<tr><td class="name"><i class="swatch" style="background:${entryColour(e)}"></i>${nameMarkup(e)}</td>` +
       sampleCounts.map(s => cell({ scene, entry: e, spp: s, metric })).join("") + "</tr>").join("") + "</tbody></table>";
 }
 

@@ -1,13 +1,13 @@
 "use strict";
 // What errors consist of, what time they take, and what each stage is worth.
 
-const entryCell = name => `<td class="name"><i class="swatch" style="background:${entryColour(name)}"></i>${escapeText(name)}</td>`;
+const entryCell = name => `<td class="name"><i class="swatch" style="background:${entryColour(name)}"></i>${nameMarkup(name)}</td>`;
 
 function addBias() {
   const rows = results.bias_and_variance.filter(r => r.seeds > 1);
   if (!rows.length) return;
   const left = rows.some(r => r.pixels_left_out > 0);
-  const part = section("bias", "Bias and variance", "Mean squared error of the linear image in two parts: what stays however many seeds are averaged, and what averages away. The reference's own noise is taken off; a bias that is not told from 0 has an interval that holds 0." +
+  const part = section("bias", "Bias and variance", "Mean squared error of the linear image in two parts: what stays however many seeds are averaged, and what averages away. The reference's own noise is taken off; a bias that is not told from 0 has an interval that holds 0. What all seeds share, as one offset of the camera for a whole frame, counts as bias." +
     (seedCount < 3 ? " Their intervals need three seeds." : "") + (left ? " Pixels that are not finite in every seed and the reference are left out." : ""));
   for (const scene of scenes.filter(s => s !== "all")) {
     const own = rows.filter(r => r.scene === scene);
@@ -45,17 +45,20 @@ function addAblations() {
   }
 }
 
+/** What no stage accounts for is grey. */
+const phaseColour = (phases, i) => i === phases.length - 1 ? "var(--line)" : colourOf(i);
+
 function timeBars(scene) {
   const own = times.rows.filter(r => r.scene === scene), phases = ["pose", "trace", ...new Set(own.flatMap(r => Object.keys(r.stages_ms))), "rest of the method"];
   const several = own.some(o => o.spp !== own[0].spp);
   const rows = own.slice(0, 40).map(r => {
     const staged = Object.values(r.stages_ms).reduce((sum, s) => sum + s.mean, 0);
     const value = p => p === "pose" ? r.pose_ms.mean : p === "trace" ? r.trace_ms.mean : p === "rest of the method" ? Math.max(r.run_ms.mean - staged, 0) : r.stages_ms[p] ? r.stages_ms[p].mean : 0;
-    return { name: several ? `${shortName(r.entry)}, ${r.spp} spp` : shortName(r.entry), parts: phases.map((p, i) => ({ name: p, value: value(p), colour: colourOf(i) })),
+    return { name: several ? `${shortName(r.entry)}, ${r.spp} spp` : shortName(r.entry), parts: phases.map((p, i) => ({ name: p, value: value(p), colour: phaseColour(phases, i) })),
              note: half(r.frame_ms) === null ? "" : `± ${shownHalf(half(r.frame_ms), r.frame_ms.mean, 3)}` };
   });
   return `<figure><figcaption>${escapeText(scene)}<small>milliseconds a frame</small></figcaption>${barChart({ rows, unit: "ms" })}` +
-    `${legend(phases.map((name, i) => ({ name, colour: colourOf(i) })))}</figure>`;
+    `${legend(phases.map((name, i) => ({ name, colour: phaseColour(phases, i) })))}</figure>`;
 }
 
 /** Every phase with its interval. */

@@ -90,7 +90,7 @@ TEST(Figures, AStripIsDrawnAsSvgAndPng) {
     };
     EXPECT_EQ(count("<image "), 1u + 2 * 2 * 3 + 2 + 1);
     EXPECT_EQ(count("data:image/png;base64,"), count("<image "));
-    EXPECT_EQ(count("stroke="), 2u + 2 * 4) << "crops are marked in the picture, and their insets framed";
+    EXPECT_EQ(count("fill=\"none\" stroke="), 2u + 2 * 4) << "crops are marked in the picture, and their insets framed";
     for (const char* text : {">noisy<", ">near<", ">far<", ">Reference<", ">cornell<", ">left<"}) EXPECT_EQ(count(text), 1u) << text;
     EXPECT_NE(svg.find("±"), std::string::npos);
     EXPECT_NE(svg.find("aria-label=\"cornell, frame 0, 1 spp"), std::string::npos);
