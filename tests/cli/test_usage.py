@@ -82,7 +82,7 @@ class Usage(CommandTest):
             "broken.obj": ("v 0 0 0\nf 1 2 99\n", ["broken.obj"]),
             "garbage.obj": ("this is no obj\nfoo bar\n", ["garbage.obj", "no faces"]),
             "empty.obj": ("", ["empty.obj", "no faces"]),
-            "cut.obj": ("v 0 0 0\nv 1 0 0\nv 0 1", ["cut.obj", "no faces"]),
+            "cut.obj": ("v 0 0 0\nv 1 0 0\nv 0 1", ["cut.obj:3", "too few numbers"]),
         }
         for name, (text, parts) in cases.items():
             (self.folder / name).write_text(text)
