@@ -29,7 +29,7 @@ assets=${LUMISCOPE_ASSETS:-$source_dir/../shared/assets}
 good() { # good KIND: its good files, small ones
     case $1 in
         study) ls scenes/studies/*.json ;;
-        json) ls scenes/*.json ;;
+        json) ls scenes/cornell.json ;;
         cage) find "$assets/subdiv" -name 'catmark_*.obj' -size -8k 2>/dev/null ;;
         jpg) find "$assets/gltf" \( -name '*.jpg' -o -name '*.jpeg' \) -size -64k 2>/dev/null ;;
         *) find "$seeds" "$assets/gltf" -name "*.$1" -size -64k 2>/dev/null ;;
