@@ -70,10 +70,7 @@ void drawRow(const PixelValue& row, bool shown) {
 
 /// One stage of a lineage: rows [begin, end), those that count.
 void drawStage(const Lineage& lineage, size_t begin, size_t end) {
-    const std::string& stage = lineage.rows[begin].stage;
-    size_t counting = 0;
-    for (size_t i = begin; i < end; ++i) counting += lineage.rows[i].weight > 0;
-    if (!ImGui::TreeNode(stage.c_str(), "%s: %zu of %zu", stage.c_str(), counting, end - begin)) return;
+    if (!section(lineage.rows[begin].stage.c_str(), false)) return;
     const WithFont mono(ui().fonts.mono);
     for (size_t i = begin; i < end; ++i) {
         const Lineage::Row& row = lineage.rows[i];
@@ -83,7 +80,6 @@ void drawStage(const Lineage& lineage, size_t begin, size_t end) {
         ImGui::SameLine(0, px(8));
         smallText(shortened(row.verdict, ImGui::GetContentRegionAvail().x));
     }
-    ImGui::TreePop();
 }
 
 /// What made the pixel, stage by stage.
@@ -111,14 +107,14 @@ void drawInspector(AppState& state) {
     ImGui::SameLine(0, px(10));
     smallText(state.pinned ? "pinned; click it again to release" : "under the pointer",
               state.pinned ? palette::kAccent : palette::kDim);
+    const auto lineage = state.snapshot->lineages.find(state.module(state.activePane));
+    if (state.pinned && lineage != state.snapshot->lineages.end() && lineage->second.pixel == *pixel) drawLineage(lineage->second);
     if (!ImGui::BeginTable("pixel", 2, ImGuiTableFlags_RowBg)) return;
     ImGui::TableSetupColumn("buffer", ImGuiTableColumnFlags_WidthFixed, px(104));
     ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
     const std::string shown = state.buffer(state.activePane);
     for (const PixelValue& row : state.session.inspect(*state.snapshot, *pixel)) drawRow(row, row.buffer == shown);
     ImGui::EndTable();
-    const auto lineage = state.snapshot->lineages.find(state.module(state.activePane));
-    if (state.pinned && lineage != state.snapshot->lineages.end() && lineage->second.pixel == *pixel) drawLineage(lineage->second);
 }
 
 }  // namespace lumi
