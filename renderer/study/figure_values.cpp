@@ -49,6 +49,13 @@ std::vector<size_t> methodsOf(const Study& study, const StudyPlan& plan, const S
     return methods;
 }
 
+/// The entry's name, with the values of what is swept: their ids would not fit.
+std::string titleOf(const Study& study, const StudyMethod& method) {
+    std::string values;
+    for (const std::string& value : method.coordinates) values += (values.empty() ? "" : ", ") + value;
+    return study.entries[method.entry].name + (values.empty() ? "" : " [" + values + "]");
+}
+
 /// The value over the picture and in each crop of one image; its map if asked for.
 void measureImage(const Metric& metric, ImagePair pair, const std::vector<CropBox>& boxes, FigureColumn& column, Image* map) {
     pair.prepare();
@@ -119,7 +126,7 @@ FigureContent figureContent(const Study& study, const StudyPlan& plan, const Stu
             content.reference = shown(reference, "RGB", colours);
             for (const StudyFigure::Crop& crop : figure.crops) content.boxes.push_back(cropBox(crop, reference.extent()));
         }
-        FigureColumn column{plan.methods[method].name, method, {}, {}, {}, std::vector<std::vector<double>>(content.boxes.size())};
+        FigureColumn column{titleOf(study, plan.methods[method]), method, {}, {}, {}, std::vector<std::vector<double>>(content.boxes.size())};
         for (const StudyRow* row : rows[method]) {
             const Image image = readColour(row->image);
             const bool first = row == rows[method].front();
