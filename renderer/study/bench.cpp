@@ -148,6 +148,10 @@ private:
         const auto result = sceneName.empty() ? comparePathtracerOnCornell(options_.stop)
                                               : comparePathtracer(opened(sceneName).scene(), options_.stop);
         if (!result) return log_.warning(name + ": Embree's pathtracer gave no result");
+        log_.info(fmt::format("{}: same file, size, camera and point light, one sample a pixel, three surfaces a path, no "
+                              "roulette; rays a path {:.2f} of ours, {:.2f} of theirs; ours alone asks for hits "
+                              "without gaps between triangles and draws Owen-scrambled Sobol numbers",
+                              name, result->ownRaysAPath, result->theirRaysAPath));
         output_({name, result->ownMrays, "Mray/s", result->times.median(), result->times.spread(), result->theirMrays});
     }
 

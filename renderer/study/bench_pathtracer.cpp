@@ -59,9 +59,8 @@ std::vector<std::string> commandOf(const fs::path& file, const View& view) {
     return command;
 }
 
-/// Mray/s from what the program prints; 0 if it is not there.
-double reportedMrays(const std::string& output) {
-    const std::string key = "BENCHMARK_RENDER_MRAYPS_AVG ";
+/// The number after `key` in what the program prints; 0 if it is not there.
+double reported(const std::string& output, const std::string& key) {
     const size_t at = output.find(key);
     return at == std::string::npos ? 0 : std::strtod(output.c_str() + at + key.size(), nullptr);
 }
@@ -78,13 +77,17 @@ std::optional<PathtracerComparison> compare(const fs::path& file, const View& vi
     uint64_t rays = 0;
     for (int round = 0; round < kRounds; ++round) {
         throwIfStopped(stop);
-        const double mrays = reportedMrays(outputOf(commandOf(file, view)));
-        if (!(mrays > 0)) return std::nullopt;
+        const std::string output = outputOf(commandOf(file, view));
+        const double mrays = reported(output, "BENCHMARK_RENDER_MRAYPS_AVG ");
+        const double frames = reported(output, "BENCHMARK_RENDER_AVG ");
+        if (!(mrays > 0) || !(frames > 0)) return std::nullopt;
         theirs.add(1 / mrays);
+        result.theirRaysAPath = mrays * 1e6 / frames / static_cast<double>(view.extent.area());
         for (int i = 0; i < kFramesARound; ++i, ++frame)
             result.times.add(timeOf([&] { rays += scene.render(frame, stop); }));
     }
     const double raysAFrame = static_cast<double>(rays) / static_cast<double>(result.times.count());
+    result.ownRaysAPath = raysAFrame / static_cast<double>(view.extent.area());
     result.ownMrays = raysAFrame / result.times.median() / 1000;
     result.theirMrays = 1 / theirs.median();
     return result;

@@ -10,6 +10,7 @@ namespace lumi {
 /// file with the same camera, one point light, one sample a pixel and paths of the same length without roulette.
 struct PathtracerComparison {
     double ownMrays = 0, theirMrays = 0;
+    double ownRaysAPath = 0, theirRaysAPath = 0;
     RunTimes times;  ///< of our frames
 };
 
