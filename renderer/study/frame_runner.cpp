@@ -1,5 +1,7 @@
 #include "study/frame_runner.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/error.h"
@@ -34,6 +36,8 @@ Document baseDocument(const JobContext& context) {
         setValue(document, "render.width", std::to_string(study.size.width), study.path.string());
         setValue(document, "render.height", std::to_string(study.size.height), study.path.string());
     }
+    // The engine takes a step that is longer than the document's own for a jump, which drops every history.
+    if (study.frames.fps > 0) setValue(document, "render.fps", fmt::format("{}", study.frames.fps), study.path.string());
     setValue(document, "view.layout", "single", study.path.string());
     setValue(document, "view.0.buffer", "image", study.path.string());
     return document;
@@ -65,11 +69,10 @@ Document jobDocument(const JobContext& context, const StudyJob& job, const std::
 }
 
 float timeOf(const Study& study, const Document& document, int64_t frame) {
-    const double fps = study.frames.fps > 0 ? study.frames.fps : document.render().fps;
     const int64_t shown = study.frames.still ? study.frames.begin : frame;
     // A scene that is shown as a single still picture keeps the time that its document has.
     if (study.frames.begin == 0 && (study.frames.still || study.frames.end == 1)) return document.time();
-    return static_cast<float>(static_cast<double>(shown) / fps);
+    return static_cast<float>(static_cast<double>(shown) / document.render().fps);
 }
 
 }  // namespace

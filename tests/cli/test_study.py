@@ -26,7 +26,8 @@ STUDY = {
 
 class StudyTest(CommandTest):
     def write(self, name="tiny.json", **changes):
-        (self.folder / name).write_text(json.dumps({**STUDY, **changes}))
+        study = {key: value for key, value in {**STUDY, **changes}.items() if value is not None}
+        (self.folder / name).write_text(json.dumps(study))
         return name
 
     def environment(self, cache="cache"):
@@ -99,6 +100,17 @@ class Results(StudyTest):
         self.assertGreater(effect["without"]["mean"], 1.6 * effect["whole"]["mean"])
         self.assertAlmostEqual(effect["difference"]["mean"], effect["without"]["mean"] - effect["whole"]["mean"], 12)
         self.assertEqual({a["stage"] for a in times["ablations"]}, {"history"})
+
+    def test_frames_at_a_rate_of_their_own_are_no_jumps(self):
+        """Slower than the scene's rate, every frame was taken for a cut and no method had a history."""
+        entries = [{"name": "raw", "module": "none"}, {"name": "temporal", "module": "temporal"}]
+        self.study(self.write(entries=entries, tuning=None, ablations=None, figures=None, pairs=None, metrics=["mse"],
+                              frames={"range": [0, 8], "measure": [7], "fps": 5}), "--out", "out")
+        rows = json.loads(self.bytes("out/results.json"))["rows"]
+        error = {(r["scene"], r["entry"], r["spp"], r["seed"]): r["metrics"]["mse"] for r in rows}
+        for (scene, entry, spp, seed), value in error.items():
+            if entry == "temporal":
+                self.assertLess(value, 0.5 * error[scene, "raw", spp, seed])
 
     def test_claims_decide_the_exit_code(self):
         good = [{"title": "the mean is better", "entry": "mean", "metric": "mse", "against": ["raw"], "at-most": 0.8}]
