@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -14,19 +15,51 @@ namespace lumi {
 namespace fs = std::filesystem;
 namespace {
 
+bool isNumber(const std::string& text) {
+    return !text.empty() && text.size() <= 9 && text.find_first_not_of("0123456789") == std::string::npos;
+}
+
+/// Is `text` the number of a process that has ended?
+bool hasEnded(const std::string& text) { return isNumber(text) && kill(std::stoi(text), 0) != 0 && errno == ESRCH; }
+
+template <class IsLeftover>
+void removeIf(const fs::path& folder, IsLeftover isLeftover) {
+    std::error_code failure;
+    std::vector<fs::path> leftovers;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? "." : folder, failure))
+        if (isLeftover(entry.path().filename().string())) leftovers.push_back(entry.path());
+    for (const fs::path& leftover : leftovers) fs::remove(leftover, failure);
+}
+
 /// Removes unfinished videos of this name whose process was killed: <stem>.<process>.part<extension>, see VideoPipe.
 void removeLeftovers(const fs::path& video) {
     const std::string head = video.stem().string() + ".", tail = ".part" + video.extension().string();
-    std::error_code failure;
-    std::vector<fs::path> leftovers;
-    for (const fs::directory_entry& entry : fs::directory_iterator(video.has_parent_path() ? video.parent_path() : ".", failure)) {
-        const std::string name = entry.path().filename().string();
-        if (name.size() <= head.size() + tail.size() || !name.starts_with(head) || !name.ends_with(tail)) continue;
-        const std::string process = name.substr(head.size(), name.size() - head.size() - tail.size());
-        if (process.size() > 9 || process.find_first_not_of("0123456789") != std::string::npos) continue;
-        if (kill(std::stoi(process), 0) != 0 && errno == ESRCH) leftovers.push_back(entry.path());
-    }
-    for (const fs::path& leftover : leftovers) fs::remove(leftover, failure);
+    removeIf(video.parent_path(), [&](const std::string& name) {
+        return name.size() > head.size() + tail.size() && name.starts_with(head) && name.ends_with(tail) &&
+               hasEnded(name.substr(head.size(), name.size() - head.size() - tail.size()));
+    });
+}
+
+/// The file to compare the image `name` with: <stem>.<process>.check<extension>.
+fs::path checkName(const fs::path& name) {
+    return fs::path(name).replace_extension(fmt::format(".{}.check{}", getpid(), name.extension().string()));
+}
+
+/// Removes what a killed process was about to write in a video's own folder: <digits>.png.<process>.<serial>.tmp (see
+/// writeFileAtomically) and checkName().
+void removeFrameLeftovers(const fs::path& folder) {
+    removeIf(folder, [](const std::string& name) {
+        std::vector<std::string> parts{""};
+        for (const char c : name)
+            if (c == '.') parts.emplace_back();
+            else parts.back() += c;
+        if (!isNumber(parts[0])) return false;
+        if (parts.size() > 3 && parts.back() == "tmp" && isNumber(parts[parts.size() - 2])) {
+            const bool frame = parts.size() == 5 && parts[1] == "png", check = parts.size() == 7 && parts[2] == "check";
+            return (frame || check) && hasEnded(parts[parts.size() - 3]);
+        }
+        return parts.size() == 4 && parts[2] == "check" && parts[3] == "png" && hasEnded(parts[1]);
+    });
 }
 
 }  // namespace
@@ -127,7 +160,7 @@ void RenderOutputs::write(const FrameOutput& frame, const Document& document, co
 void RenderOutputs::verify(const FrameOutput& frame, const Document& document, const StateLog& log) const {
     const std::string state = log.json(choice_.json());
     for (const std::string& name : numberedFiles(frame.number)) {
-        const fs::path again = unusedPath(fs::path(name).replace_extension(".check" + fs::path(name).extension().string()));
+        const fs::path again = unusedPath(checkName(name));
         exportView(again, frame, document, choice_, state);
         const bool same = readFile(name) == readFile(again);
         fs::remove(again);
@@ -146,8 +179,10 @@ void RenderOutputs::finishVideo(const Output& output, int64_t begin, int64_t end
     pipe->finish();
     files_.push_back(output.video.string());
     for (int64_t frame = begin; frame < end; ++frame) fs::remove(numberedName(output.name, frame));
+    const fs::path folder = fs::path(numberedName(output.name, begin)).parent_path();
+    removeFrameLeftovers(folder);
     std::error_code notEmpty;
-    fs::remove(fs::path(numberedName(output.name, begin)).parent_path(), notEmpty);  // unless others keep files there
+    fs::remove(folder, notEmpty);  // unless others keep files there
 }
 
 void RenderOutputs::finish(int64_t begin, int64_t end) {

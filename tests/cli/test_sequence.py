@@ -116,12 +116,25 @@ class Sequence(CommandTest):
         process.send_signal(signal.SIGKILL)
         process.wait()
         kept = len(list(frames.glob("*.png")))
-        if not (self.folder / "a.mp4").exists():
+        if (self.folder / "a.mp4").exists():  # it was killed while it removed the frames of the complete video
+            shutil.rmtree(frames, ignore_errors=True)
+        else:
+            # Killed while it wrote a frame, and while it compared one with what was there.
+            for left in ("000003.png.999999999.4.tmp", "000002.999999999.check.png", "000002.999999999.check.png.999999999.0.tmp"):
+                (frames / left).write_bytes(b"half of a fra")
             result = self.good(*command[:-2], "--json", "--out", "a.mp4").json
             self.assertGreaterEqual(result["frames_kept"], kept - 1)
             self.assertEqual(result["files"], ["a.mp4"])
         self.assertEqual(self.files(), ["a.mp4", "whole.mp4"])
         self.assertEqual(self.bytes("a.mp4"), self.bytes("whole.mp4"))
+        # What somebody else keeps there, or still writes, stays.
+        frames = self.folder / "b.mp4.frames"
+        frames.mkdir()
+        others = ["000001.png.1.0.tmp", "000002.999999999.check.txt", "notes.png.999999999.0.tmp", "notes.txt"]
+        for name in others:
+            (frames / name).write_bytes(b"kept")
+        self.good(*command, "b.mp4")
+        self.assertEqual(sorted(path.name for path in frames.iterdir()), others)
 
     def test_a_camera_path(self):
         path = {"format": "lumiscope-camera-path", "version": 1, "interpolation": "linear",
