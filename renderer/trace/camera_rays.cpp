@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/hash.h"
 #include "math/warp.h"
 #include "trace/sampler.h"
 #include "trace/tracer.h"
@@ -76,8 +77,8 @@ float FrameSampling::timeOf(int x, int y, uint64_t sample) const {
     return SampleStream(path.sampler, path.haltonLoop, seed, key).get1(dimension::kTime);
 }
 
-Vec2 frameJitter(uint64_t sampleIndex) {
-    const uint64_t index = sampleIndex % 16 + 1;
+Vec2 frameJitter(uint64_t sampleIndex, uint32_t seed) {
+    const uint64_t index = (seed == 0 ? 0 : mixBits(seed) % 46656) + sampleIndex % 16 + 1;
     return {radicalInverse(2, index) - 0.5f, radicalInverse(3, index) - 0.5f};
 }
 

@@ -137,7 +137,7 @@ void makeStarts(const FrameSampling& sampling, int left, int top, uint64_t sampl
     starts.clear();
     const int right = std::min(left + SignalsObserver::kTile, sampling.extent.width);
     const int bottom = std::min(top + SignalsObserver::kTile, sampling.extent.height);
-    const Vec2 common = sampling.jitter == Jitter::PerFrame ? frameJitter(sample) + Vec2(0.5f) : Vec2(0.5f);
+    const Vec2 common = sampling.jitter == Jitter::PerFrame ? frameJitter(sample, sampling.seed) + Vec2(0.5f) : Vec2(0.5f);
     for (int y = top; y < bottom; ++y)
         for (int x = left; x < right; ++x) {
             const RandomKey key{static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(sample)};

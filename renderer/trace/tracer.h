@@ -114,7 +114,8 @@ private:
 PathStart cameraStart(const CameraPose& camera, Vec2 pixelPosition, Vec2 lens, float time);
 
 /// Sub-pixel offset of frame `sampleIndex` in [-0.5, 0.5]^2 relative to the pixel centre, shared by all pixels
-/// (Jitter::PerFrame): Halton (2, 3), looping after 16.
-Vec2 frameJitter(uint64_t sampleIndex);
+/// (Jitter::PerFrame): Halton (2, 3), 16 points in a loop. Each seed takes another stretch of the sequence, seed 0
+/// its beginning, so that seeds replicate the offset as they do all random numbers.
+Vec2 frameJitter(uint64_t sampleIndex, uint32_t seed);
 
 }  // namespace lumi

@@ -42,7 +42,7 @@ Pixels pixelsOf(const FrameContext& context, int top, int bottom) {
     const IdImage& surface = context.signals.ids(Signal::Surface);
     const int width = context.signals.extent().width;
     const uint64_t first = context.sampling.firstSample;
-    const Vec2 jitter = context.sampling.jitter == Jitter::PerFrame ? frameJitter(first) : Vec2(0);
+    const Vec2 jitter = context.sampling.jitter == Jitter::PerFrame ? frameJitter(first, context.sampling.seed) : Vec2(0);
     Pixels pixels;
     for (int y = top; y < bottom; ++y)
         for (int x = 0; x < width; ++x) {

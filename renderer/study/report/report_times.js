@@ -7,7 +7,7 @@ function addBias() {
   const rows = results.bias_and_variance.filter(r => r.seeds > 1);
   if (!rows.length) return;
   const left = rows.some(r => r.pixels_left_out > 0);
-  const part = section("bias", "Bias and variance", "Mean squared error of the linear image in two parts: what stays however many seeds are averaged, and what averages away. The reference's own noise is taken off; a bias that is not told from 0 has an interval that holds 0. What all seeds share, as one offset of the camera for a whole frame, counts as bias." +
+  const part = section("bias", "Bias and variance", "Mean squared error of the linear image in two parts: what stays however many seeds are averaged, and what averages away. The reference's own noise is taken off; a bias that is not told from 0 has an interval that holds 0. What all seeds share counts as bias." +
     (seedCount < 3 ? " Their intervals need three seeds." : "") + (left ? " Pixels that are not finite in every seed and the reference are left out." : ""));
   for (const scene of scenes.filter(s => s !== "all")) {
     const own = rows.filter(r => r.scene === scene);

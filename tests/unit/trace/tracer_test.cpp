@@ -256,16 +256,32 @@ TEST(CameraRays, GoWhereTheCameraProjects) {
 }
 
 TEST(CameraRays, FrameJitterIsCentredAndLoops) {
-    Vec2 sum(0);
-    for (uint64_t i = 0; i < 16; ++i) {
-        const Vec2 j = frameJitter(i);
-        EXPECT_LE(std::abs(j.x), 0.5f);
-        EXPECT_LE(std::abs(j.y), 0.5f);
-        EXPECT_EQ(j, frameJitter(i + 16));
-        sum += j;
+    for (const uint32_t seed : {0u, 1u, 2u, 77u}) {
+        Vec2 sum(0);
+        for (uint64_t i = 0; i < 16; ++i) {
+            const Vec2 j = frameJitter(i, seed);
+            EXPECT_LE(std::abs(j.x), 0.5f);
+            EXPECT_LE(std::abs(j.y), 0.5f);
+            EXPECT_EQ(j, frameJitter(i + 16, seed));
+            sum += j;
+        }
+        EXPECT_LT(std::abs(sum.x) / 16, 0.05f) << seed;
+        EXPECT_LT(std::abs(sum.y) / 16, 0.05f) << seed;
     }
-    EXPECT_LT(std::abs(sum.x) / 16, 0.05f);
-    EXPECT_LT(std::abs(sum.y) / 16, 0.05f);
+}
+
+TEST(CameraRays, SeedsReplicateTheFrameJitter) {
+    // The same frame of a thousand seeds: its offset is uniform, so that a mean over seeds has none.
+    Vec2 sum(0), squares(0);
+    for (uint32_t seed = 1; seed <= 1000; ++seed) {
+        const Vec2 j = frameJitter(3, seed);
+        sum += j, squares += j * j;
+    }
+    EXPECT_EQ(frameJitter(0, 0), Vec2(0, 1.0f / 3 - 0.5f));
+    for (int c = 0; c < 2; ++c) {
+        EXPECT_LT(std::abs(sum[c]) / 1000, 4 * std::sqrt(1 / 12.0f / 1000));
+        EXPECT_NEAR(squares[c] / 1000, 1 / 12.0f, 0.01f);
+    }
 }
 
 TEST(PathSettings, DescribesEveryMember) {
