@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/compare_parts.h"
 #include "base/error.h"
@@ -66,17 +67,49 @@ LoadedFile load(const fs::path& path, bool layers) {
     return file;
 }
 
-ExposureUsed exposureOf(const CompareOptions& options, const fs::path& imagePath, const LoadedFile& image,
-                        const fs::path& referencePath, const LoadedFile& reference) {
-    if (options.exposureEv) return {*options.exposureEv, "--exposure", ""};
-    if (!image.linear || !reference.linear) return {0, "stored as shown", ""};
+std::string nameOf(const fs::path& path) { return path.filename().string(); }
+
+/// Of two linear files.
+ExposureUsed commonExposure(const fs::path& imagePath, const LoadedFile& image, const fs::path& referencePath,
+                            const LoadedFile& reference) {
     ExposureUsed used{0, "no state", ""};
-    if (reference.exposureEv) used = {*reference.exposureEv, "state of " + referencePath.filename().string(), ""};
-    else if (image.exposureEv) used = {*image.exposureEv, "state of " + imagePath.filename().string(), ""};
+    if (reference.exposureEv) used = {*reference.exposureEv, "state of " + nameOf(referencePath), ""};
+    else if (image.exposureEv) used = {*image.exposureEv, "state of " + nameOf(imagePath), ""};
     if (image.exposureEv && *image.exposureEv != used.ev)
-        used.warning = fmt::format("{} was made at an exposure of {} EV, {} at {}; both are judged at {}",
-                                   imagePath.filename().string(), *image.exposureEv, referencePath.filename().string(), used.ev, used.ev);
+        used.warning = fmt::format("{} was made at an exposure of {} EV, {} at {}; both are judged at {}", nameOf(imagePath),
+                                   *image.exposureEv, nameOf(referencePath), used.ev, used.ev);
     return used;
+}
+
+/// Of a linear file and a picture as shown.
+ExposureUsed exposureBesidePicture(const CompareOptions& options, const fs::path& linearPath, const LoadedFile& linear,
+                                   const fs::path& picturePath) {
+    ExposureUsed used;
+    used.ev = options.exposureEv.value_or(linear.exposureEv.value_or(0));
+    const char* from = options.exposureEv ? "--exposure for" : linear.exposureEv ? "state of" : "no state in";
+    used.from = fmt::format("{} {}; {} stored as shown", from, nameOf(linearPath), nameOf(picturePath));
+    used.warning = fmt::format("{} is a picture as shown: a tone curve in it and light beyond white count as differences from {}",
+                               nameOf(picturePath), nameOf(linearPath));
+    return used;
+}
+
+/// Takes back the exposure that a picture holds, so that it is linear as the file beside it and is shown as it is stored.
+void takeBack(Image& picture, float exposureEv) {
+    const float factor = std::exp2(-exposureEv);
+    for (size_t i = 0; i < picture.size(); ++i) picture.data()[i] *= factor;
+}
+
+/// Decides on the exposure; of two files of which one is a picture, the picture's is taken back.
+ExposureUsed matchExposures(const CompareOptions& options, const fs::path& imagePath, LoadedFile& image,
+                            const fs::path& referencePath, LoadedFile& reference) {
+    if (image.linear != reference.linear) {
+        const ExposureUsed used = image.linear ? exposureBesidePicture(options, imagePath, image, referencePath)
+                                               : exposureBesidePicture(options, referencePath, reference, imagePath);
+        takeBack(image.linear ? reference.rgb : image.rgb, used.ev);
+        return used;
+    }
+    if (options.exposureEv) return {*options.exposureEv, "--exposure", ""};
+    return image.linear ? commonExposure(imagePath, image, referencePath, reference) : ExposureUsed{0, "stored as shown", ""};
 }
 
 }  // namespace
@@ -84,7 +117,7 @@ ExposureUsed exposureOf(const CompareOptions& options, const fs::path& imagePath
 ComparedPair loadPair(const CompareOptions& options, const fs::path& imagePath, const fs::path& referencePath, bool layers) {
     LoadedFile image = load(imagePath, false), reference = load(referencePath, layers);
     ComparedPair loaded;
-    loaded.exposure = exposureOf(options, imagePath, image, referencePath, reference);
+    loaded.exposure = matchExposures(options, imagePath, image, referencePath, reference);
     ImagePair& pair = loaded.pair;
     pair.image = std::move(image.rgb), pair.reference = std::move(reference.rgb);
     if (!options.mask.empty()) pair.mask = luminanceMask(loadImage(options.mask));

@@ -9,11 +9,12 @@
 namespace lumi {
 
 /// Stops for the metrics that judge images as shown: --exposure; else those in the state of the reference, then of the
-/// image; else 0. A picture that is stored as shown (.png and the like) has its exposure in it already.
+/// image; else 0. A picture that is stored as shown (.png and the like) has its exposure in it already: beside a linear file
+/// only that file gets these stops, and the picture is judged as it is stored.
 struct ExposureUsed {
     float ev = 0;
-    std::string from;     ///< "--exposure", "state of ref.exr", "no state"
-    std::string warning;  ///< the two files differ; empty: they do not
+    std::string from;     ///< "--exposure", "state of ref.exr", "no state", "state of ref.exr; a.png stored as shown"
+    std::string warning;  ///< the two files differ in kind or exposure; empty: they do not
 };
 
 /// Two images with what masks and crops leave of them, prepared for measuring, and as they came.

@@ -41,6 +41,7 @@ class Compare(CommandTest):
         self.assertIsNone(values["psnr"], "infinite")
         self.assertAlmostEqual(values["ssim"], 1, places=6)
         self.assertAlmostEqual(values["ms_ssim"], 1, places=6)
+        self.assertEqual(report["details"]["ms_ssim"], {"scales": 2})
 
     def test_white_and_black(self):
         for pair in (("white.png", "black.png"), ("black.png", "white.png")):
@@ -163,6 +164,28 @@ class Compare(CommandTest):
         self.good("reference", "lit.json", "--size", "32x24", "--spp", 16, "--out", "ref.exr", "--quiet", XDG_CACHE_HOME=str(self.folder))
         lit = self.good("compare", "lit.exr", "ref.exr", "--metrics", "ssim", "--json")
         self.assertEqual((lit.json["exposure"], lit.json["exposure_from"], lit.err), (1.5, "state of ref.exr", ""))
+
+    def test_a_picture_beside_a_linear_file_is_as_stored(self):
+        for exposure in (-1.3, 2):
+            self.good("render", "cornell", "--size", "64x48", "--spp", 4, "--exposure", exposure, "--set", "view.0.tone-curve=clamp",
+                      "--out", "%d.exr", "--out", "%d.png", "--quiet")
+            for pair in (("0.png", "0.exr"), ("0.exr", "0.png"), ("%d.png", "0.exr")):
+                result = self.good("compare", *pair, "--metrics", "rmse,smape", "--json")
+                report = result.json
+                # Half a step of 8 bits, evenly distributed, is 1 / 255 / sqrt(12).
+                self.assertLess(report["metrics"]["rmse"], 1.5 / 255 / 12 ** 0.5)
+                self.assertLess(report["metrics"]["smape"], 0.1)
+                self.assertAlmostEqual(report["exposure"], exposure, places=5)
+                self.assertEqual(report["exposure_from"], "state of 0.exr; 0.png stored as shown")
+                self.assertIn("0.png is a picture as shown", result.err)
+            other = self.good("compare", "0.png", "0.exr", "--metrics", "rmse", "--exposure", 0, "--json").json
+            self.assertGreater(other["metrics"]["rmse"], 0.05)
+            self.assertEqual(other["exposure_from"], "--exposure for 0.exr; 0.png stored as shown")
+            for name in ("0.png", "0.exr"):
+                (self.folder / name).unlink()
+        write_exr(self.folder / "plain.exr", WIDTH, HEIGHT, lambda x, y: (1, 1, 1))
+        report = self.good("compare", "white.png", "plain.exr", "--metrics", "mse", "--json").json
+        self.assertEqual((report["metrics"]["mse"], report["exposure_from"]), (0, "no state in plain.exr; white.png stored as shown"))
 
     def test_two_renderings(self):
         for name, spp in (("noisy.exr", 1), ("better.exr", 16), ("best.exr", 256)):
