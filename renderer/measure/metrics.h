@@ -19,7 +19,7 @@ Measurement measureCpbd(const ImagePair& pair, bool wantMap);
 /// SSIM of LDR images in [0,1] [Wang 2004]: Gaussian window 11, sigma 1.5, windows fully inside, mean over channels.
 double ssim(const Image& image, const Image& reference);
 /// MS-SSIM [Wang 2003]: five scales with the standard weights; halving averages 2x2, odd sizes repeat their last row
-/// and column. Images smaller than 176 pixels on a side use as many scales as fit, weights renormalised.
+/// and column. Images below 161 pixels on a side use as many scales as fit, weights renormalised.
 double msSsim(const Image& image, const Image& reference);
 
 /// Exposure range of HDR-FLIP from the reference [Andersson 2021, sec. 3.2] with the ACES tone mapper. A reference whose

@@ -179,6 +179,7 @@ Measurement measureMsSsim(const ImagePair& pair, bool wantMap) {
     }
     result.value = total / 3;
     if (std::isnan(result.value)) result.reason = kNoWindow;
+    result.details.emplace_back("scales", static_cast<double>(scalesThatFit(a.extent())));
     if (wantMap) clearUncounted(result.map, pair);
     return result;
 }

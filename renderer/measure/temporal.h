@@ -22,7 +22,7 @@ struct SequenceMetric {
     const char* id;
     const char* title;
     const char* definition;
-    bool symmetric;      ///< the same if the two frames change places
+    bool symmetric;      ///< the same if image and reference change places: none of them is
     const char* range;   ///< interval of its values
     const char* source;  ///< as in Metric
 };

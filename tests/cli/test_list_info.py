@@ -44,7 +44,7 @@ class List(CommandTest):
             if metric["source"][-1].isdigit():
                 self.assertIn(f"| {metric['source']} |", (SOURCE / "README.md").read_text(), "its source is in the bibliography")
         self.assertEqual({m["id"] for m in metrics if m["higher_is_better"]}, {"psnr", "ssim", "ms_ssim", "cpbd"})
-        self.assertEqual({m["id"] for m in metrics if not m["symmetric"]}, {"relmse", "hdr_flip", "cpbd", "temporal_reprojected", "lag"})
+        self.assertEqual({m["id"] for m in metrics if not m["symmetric"]}, {"relmse", "hdr_flip", "cpbd", "temporal", "temporal_reprojected", "lag"})
         self.assertEqual({m["id"] for m in metrics if m["of"] == "frames"}, {"temporal", "temporal_reprojected", "lag"})
 
     def test_parameters(self):

@@ -155,19 +155,26 @@ Result ssim(const ImagePair& pair) {
 Result msSsim(const ImagePair& pair) {
     const double exponents[] = {0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
     const auto first = shown(pair.image, pair.exposureEv), second = shown(pair.reference, pair.exposureEv);
-    double sum = 0;
+    const Plane counts = countedPlane(pair);
+    Result result{0, Plane(counts.width, counts.height)};
     for (size_t c = 0; c < 3; ++c) {
-        Plane a = first[c], b = second[c], counted = countedPlane(pair);
+        Plane a = first[c], b = second[c], counted = counts, local(counts.width, counts.height);
+        std::fill(local.values.begin(), local.values.end(), 1.0);
         double product = 1;
         for (int scale = 0; scale < 5; ++scale) {
             const Windows windows = windowsOf(a, b);
-            const double mean = meanOfWindows(scale < 4 ? windows.contrast : windows.ssim, counted);
-            product *= std::pow(std::max(mean, 0.0), exponents[scale]);
+            const Plane& values = scale < 4 ? windows.contrast : windows.ssim;
+            product *= std::pow(std::max(meanOfWindows(values, counted), 0.0), exponents[scale]);
+            for (int y = 0; y < local.height; ++y)  // the window around the pixel, or the nearest one inside
+                for (int x = 0; x < local.width; ++x)
+                    local.at(x, y) *= std::pow(std::max(values.near((x >> scale) - 5, (y >> scale) - 5), 0.0), exponents[scale]);
             a = halved(a), b = halved(b), counted = halved(counted);
         }
-        sum += product / 3;
+        result.value += product / 3;
+        for (size_t i = 0; i < local.values.size(); ++i)
+            if (counts.values[i] > 0) result.map.values[i] += (1 - local.values[i]) / 3;
     }
-    return {sum};
+    return result;
 }
 
 Result cpbd(const ImagePair& pair) {
@@ -194,6 +201,7 @@ Result cpbd(const ImagePair& pair) {
         return length;
     };
     double edges = 0, sharp = 0;
+    Plane map(w, h);
     for (int by = 0; by < h; by += 64)
         for (int bx = 0; bx < w; bx += 64) {
             const int x1 = std::min(bx + 64, w), y1 = std::min(by + 64, h);
@@ -208,10 +216,11 @@ Result cpbd(const ImagePair& pair) {
                     const double rise = gray.at(x + 1, y) > gray.at(x - 1, y) ? 1 : -1;
                     const int width = reach(x, y, 1, rise) + reach(x, y, -1, -rise);
                     ++edges;
-                    sharp += 1 - std::exp(-std::pow(width / (high - low <= 50 ? 5.0 : 3.0), 3.6)) <= 0.63;
+                    map.at(x, y) = 1 - std::exp(-std::pow(width / (high - low <= 50 ? 5.0 : 3.0), 3.6));
+                    sharp += map.at(x, y) <= 0.63;
                 }
         }
-    return {edges > 0 ? sharp / edges : 0};
+    return {edges > 0 ? sharp / edges : 0, map};
 }
 
 }  // namespace lumi::plain

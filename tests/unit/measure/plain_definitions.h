@@ -18,7 +18,7 @@ struct Plane {
     double near(int x, int y) const;
 };
 
-/// A prepared pair's value, and what its map shows (empty where the metric's map is tested elsewhere).
+/// A prepared pair's value, and what its map shows.
 struct Result {
     double value = 0;
     Plane map{0, 0};
