@@ -85,10 +85,8 @@ int runStudyCommand(const StudyCommandOptions& options, const MachineOptions& ma
         }
         for (const auto& [folder, count] : folders) std::fputs(fmt::format("Wrote {} files in {}\n", count, folder).c_str(), stderr);
     }
-    const bool failed = std::any_of(outcome.checks.begin(), outcome.checks.end(), [](const StudyCheckResult& result) {
-        return result.verdict == StudyCheckResult::Verdict::Fails || result.verdict == StudyCheckResult::Verdict::Unknown;
-    });
-    return failed ? static_cast<int>(ErrorKind::CheckFailed) : 0;
+    const bool held = std::all_of(outcome.checks.begin(), outcome.checks.end(), [](const StudyCheckResult& result) { return result.asClaimed(); });
+    return held ? 0 : static_cast<int>(ErrorKind::CheckFailed);
 }
 
 }  // namespace lumi

@@ -40,7 +40,7 @@ Interval ratioInterval(const Study& study, const std::vector<double>& a, const s
 Verdict judge(const Study& study, const std::vector<double>& excess) {
     const Interval interval = meanInterval(excess, study.intervals.level, intervalMethod(study));
     if (interval.count == 0) return Verdict::Unknown;
-    if (interval.mean > 0) return Verdict::Fails;
+    if (interval.mean > 0) return interval.known() && interval.low > 0 ? Verdict::Fails : Verdict::FailsWithinNoise;
     return interval.known() && interval.high <= 0 ? Verdict::Holds : Verdict::WithinNoise;
 }
 
@@ -55,19 +55,15 @@ std::vector<double> excessOf(const StudyCheck& check, const std::vector<double>&
 
 /// Of two results the one that says more against the claim.
 bool isWorse(const StudyCheck& check, const StudyCheckResult& a, const StudyCheckResult& b) {
-    if (a.verdict != b.verdict) {
-        const auto order = [](Verdict verdict) { return verdict == Verdict::Holds ? 0 : verdict == Verdict::WithinNoise ? 1 : verdict == Verdict::Fails ? 2 : 3; };
-        return order(a.verdict) > order(b.verdict);
-    }
+    if (a.verdict != b.verdict) return a.verdict > b.verdict;  // they are declared from the best to the worst
     return check.atLeast ? a.ratio.mean < b.ratio.mean : a.ratio.mean > b.ratio.mean;
 }
 
-std::optional<StudyCheckResult> resultOf(const Study& study, const StudyPlan& plan, const StudyRowIndex& rows, size_t index, size_t scene, int spp) {
+/// One claim on one scene. Every name in it gets a verdict: what is not there makes it unknown, and never goes unsaid.
+StudyCheckResult resultOf(const Study& study, const StudyPlan& plan, const StudyRowIndex& rows, size_t index, size_t scene, int spp) {
     const StudyCheck& check = study.checks[index];
     const std::optional<size_t> method = methodOf(study, plan, check.entry);
-    if (!method) return std::nullopt;
-    const std::vector<double> own = unitValues(study, rows, scene, *method, spp, check.metric);
-    if (own.empty()) return std::nullopt;
+    const std::vector<double> own = method ? unitValues(study, rows, scene, *method, spp, check.metric) : std::vector<double>{};
     StudyCheckResult result{index, scene, spp, "", meanInterval(own, study.intervals.level, intervalMethod(study)), {}, check.bound, Verdict::Unknown};
     if (check.against.empty()) {
         result.verdict = judge(study, excessOf(check, own, nullptr));
@@ -77,14 +73,25 @@ std::optional<StudyCheckResult> resultOf(const Study& study, const StudyPlan& pl
     for (const std::string& name : check.against) {
         const std::optional<size_t> other = methodOf(study, plan, name);
         const std::vector<double> values = other ? unitValues(study, rows, scene, *other, spp, check.metric) : std::vector<double>{};
-        if (values.size() != own.size()) continue;
         StudyCheckResult one = result;
         one.against = name;
-        one.ratio = ratioInterval(study, own, values);
-        one.verdict = judge(study, excessOf(check, own, &values));
+        if (values.size() == own.size()) {
+            one.ratio = ratioInterval(study, own, values);
+            one.verdict = judge(study, excessOf(check, own, &values));
+        } else {
+            one.ratio = meanInterval({}, study.intervals.level);
+        }
         if (!worst || isWorse(check, one, *worst)) worst = std::move(one);
     }
-    return worst;
+    return *worst;
+}
+
+/// The sample counts that an entry runs with, ascending.
+std::vector<int> countsOf(const Study& study, const std::string& name) {
+    const StudyEntry* entry = study.entry(name);
+    std::vector<int> counts = entry && !entry->spp.empty() ? entry->spp : study.spp;
+    std::sort(counts.begin(), counts.end());
+    return counts;
 }
 
 }  // namespace
@@ -97,8 +104,8 @@ std::vector<StudyCheckResult> checkClaims(const Study& study, const StudyPlan& p
             // On average means over all scenes; where there is one scene that is the average.
             const bool average = scene == kAllScenes || rows.scenes().size() == 1;
             if (study.checks[index].onAverage ? !average : scene == kAllScenes) continue;
-            for (const int spp : rows.spp())
-                if (const auto result = resultOf(study, plan, rows, index, scene, spp)) results.push_back(*result);
+            for (const int spp : countsOf(study, study.checks[index].entry))
+                results.push_back(resultOf(study, plan, rows, index, scene, spp));
         }
     return results;
 }
@@ -107,6 +114,7 @@ const char* verdictText(StudyCheckResult::Verdict verdict) {
     switch (verdict) {
         case Verdict::Holds: return "holds";
         case Verdict::WithinNoise: return "holds within the noise";
+        case Verdict::FailsWithinNoise: return "fails within the noise";
         case Verdict::Fails: return "fails";
         case Verdict::Unknown: return "unknown";
     }

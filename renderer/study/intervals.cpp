@@ -67,6 +67,10 @@ void bootstrap(std::span<const double> values, double level, Interval& interval)
     interval.high = end(1 - (1 - level) / 2);
 }
 
+/// Are there enough values for resamples to say something at this level? With n of them every mean of a resample has one sign
+/// wherever all values have, and noise alone gives them one in 2^(1-n) of all cases.
+bool canResample(size_t count, double level) { return std::ldexp(1.0, 1 - static_cast<int>(std::min<size_t>(count, 64))) < 1 - level; }
+
 std::vector<double> finiteOf(std::span<const double> values) {
     std::vector<double> finite;
     for (const double value : values)
@@ -90,7 +94,7 @@ Interval meanInterval(std::span<const double> all, double level, IntervalMethod 
     interval.standardError = values.size() > 1 ? std::sqrt(moments.meanVariance()) : kNaN;
     if (values.size() < 2) {
         interval.low = interval.high = kNaN;
-    } else if (method == IntervalMethod::Bootstrap) {
+    } else if (method == IntervalMethod::Bootstrap && canResample(values.size(), level)) {
         bootstrap(values, level, interval);
     } else {
         const double half = studentQuantile((1 - level) / 2, static_cast<double>(values.size() - 1)) * interval.standardError;
@@ -162,11 +166,13 @@ double logLogSlope(std::span<const double> x, std::span<const double> y) {
     return xx > 0 ? xy / xx : kNaN;
 }
 
-double logLogAt(std::span<const double> x, std::span<const double> y, double at) {
+double logLogAt(std::span<const double> x, std::span<const double> y, double at, Course course) {
     assert(x.size() == y.size());
-    for (size_t i = 0; i < x.size(); ++i) {
+    for (size_t i = x.size(); i-- > 0;) {
         if (x[i] == at) return y[i];
-        if (i == 0 || at < x[i - 1] || at > x[i]) continue;
+        if (i == 0) break;
+        const bool reached = course == Course::Rising ? x[i - 1] <= at && at <= x[i] : x[i - 1] >= at && at >= x[i];
+        if (!reached) continue;
         if (!(x[i - 1] > 0) || !(y[i - 1] > 0) || !(y[i] > 0)) return kNaN;
         const double t = std::log(at / x[i - 1]) / std::log(x[i] / x[i - 1]);
         return std::exp((1 - t) * std::log(y[i - 1]) + t * std::log(y[i]));

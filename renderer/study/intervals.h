@@ -20,8 +20,9 @@ struct Interval {
 enum class IntervalMethod { StudentT, Bootstrap };
 
 /// Mean of independent values with its two-sided interval at `level` (0.95): Student's t, or the bias-corrected and
-/// accelerated bootstrap [Efron 1987] with 4000 resamples from fixed random numbers. Values that are not finite are missing
-/// ones: they do not count.
+/// accelerated bootstrap [Efron 1987] with 4000 resamples from fixed random numbers. With n values of which noise alone
+/// gives all one sign more often than the level allows (2^(1-n) >= 1 - level: fewer than six at 0.95) resamples say nothing,
+/// and the bootstrap's interval is Student's. Values that are not finite are missing ones: they do not count.
 Interval meanInterval(std::span<const double> values, double level, IntervalMethod method = IntervalMethod::StudentT);
 
 /// Interval of the mean difference a[i] - b[i] of values that were measured on the same samples. Pairs of which a value is
@@ -60,8 +61,10 @@ std::vector<double> pseudoValues(double all, std::span<const double> without);
 /// Slope of the least-squares line through (log x, log y); NaN with fewer than two different x or a y that is not above 0.
 double logLogSlope(std::span<const double> x, std::span<const double> y);
 
-/// y at `at` on the polyline through (x, y) in log-log space, x ascending; NaN outside [x.front(), x.back()] or where a
-/// value is not above 0.
-double logLogAt(std::span<const double> x, std::span<const double> y, double at);
+enum class Course { Rising, Falling };
+
+/// y on the polyline through (x, y) in log-log space where x comes to `at` for the last time on a piece that takes this
+/// course. Noise may let x turn back in between. NaN where x never comes there, or where a value is not above 0.
+double logLogAt(std::span<const double> x, std::span<const double> y, double at, Course course = Course::Rising);
 
 }  // namespace lumi

@@ -75,6 +75,19 @@ void readWhere(const JsonTree& tree, ObjectReader& reader, const Study& study, S
     if (const JsonValue* metric = reader.find("metric")) figure.metric = readMapMetric(tree, *metric);
 }
 
+bool isSwept(const Study& study, const std::string& entry) {
+    if (!study.sweep) return false;
+    const std::vector<std::string>& swept = study.sweep->entries;
+    return swept.empty() || std::count(swept.begin(), swept.end(), entry) > 0;
+}
+
+/// The name of an entry that is one method: of a swept one nobody knows which is meant.
+std::string readUnsweptName(const JsonTree& tree, const JsonValue& value, const Study& study, const std::string& name) {
+    const std::string entry = readEntryName(tree, value, study, name);
+    if (isSwept(study, entry)) refuseValue(tree, value, name, "an entry that is not swept");
+    return entry;
+}
+
 }  // namespace
 
 void checkFileName(const JsonTree& tree, const JsonValue& value, const std::string& name) {
@@ -99,10 +112,7 @@ void readAblations(const JsonTree& tree, const JsonValue* section, Study& study)
         ObjectReader reader(tree, item, "ablation");
         StudyAblation ablation;
         const JsonValue& entry = reader.need("entry");
-        ablation.entry = readEntryName(tree, entry, study, "entry");
-        const bool swept = study.sweep && (study.sweep->entries.empty() || std::count(study.sweep->entries.begin(),
-                                                                                     study.sweep->entries.end(), ablation.entry));
-        if (swept) refuseValue(tree, entry, "entry", "an entry that is not swept");
+        ablation.entry = readUnsweptName(tree, entry, study, "entry");
         for (const StudyAblation& earlier : study.ablations)
             if (earlier.entry == ablation.entry) refuseValue(tree, entry, "entry", "each entry once");
         const JsonValue& stages = reader.need("stages");
@@ -127,7 +137,7 @@ void readChecks(const JsonTree& tree, const JsonValue* section, Study& study) {
         ObjectReader reader(tree, item, "check");
         StudyCheck check;
         check.title = reader.text("title").value_or("");
-        check.entry = readEntryName(tree, reader.need("entry"), study, "entry");
+        check.entry = readUnsweptName(tree, reader.need("entry"), study, "entry");
         const JsonValue& metric = reader.need("metric");
         check.metric = readText(tree, metric, "metric");
         std::vector<std::string> measured = study.metrics;
@@ -135,7 +145,7 @@ void readChecks(const JsonTree& tree, const JsonValue* section, Study& study) {
         if (!study.measures(check.metric)) refuseName(tree, metric.at, "metric of the study", check.metric, measured);
         if (const JsonValue* against = reader.find("against")) {
             readTexts(tree, *against, "against");
-            for (const JsonValue& name : against->items) check.against.push_back(readEntryName(tree, name, study, "against"));
+            for (const JsonValue& name : against->items) check.against.push_back(readUnsweptName(tree, name, study, "against"));
         }
         const std::optional<double> most = reader.number("at-most", -1e9, 1e9), least = reader.number("at-least", -1e9, 1e9);
         if (most.has_value() == least.has_value()) refuseValue(tree, item, "check", "either \"at-most\" or \"at-least\"");

@@ -80,12 +80,12 @@ void addSlopes(const Study& study, const StudyPlan& plan, const StudyRowIndex& r
 
 /// Samples at which `curve` has the value; beyond its last, by the square of the error falling as 1/n.
 double samplesFor(const SeedCurve& curve, double value, bool root, bool& extrapolated) {
-    std::vector<double> errors(curve.value.rbegin(), curve.value.rend()), spp(curve.spp.rbegin(), curve.spp.rend());
-    if (value < errors.front() && errors.front() > 0 && value > 0) {
+    const double last = curve.value.back();
+    if (value < last && last > 0 && value > 0) {
         extrapolated = true;
-        return spp.front() * std::pow(errors.front() / value, root ? 2 : 1);
+        return curve.spp.back() * std::pow(last / value, root ? 2 : 1);
     }
-    return logLogAt(errors, spp, value);
+    return logLogAt(curve.value, curve.spp, value, Course::Falling);
 }
 
 void addEquivalents(const Study& study, const StudyPlan& plan, const StudyRowIndex& rows, StudySummaries& all) {

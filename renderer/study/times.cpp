@@ -48,7 +48,7 @@ std::vector<StudyMeanTime> meanTimes(const Study& study, const StudyRecords& rec
     return means;
 }
 
-/// A seed's time and metric at each of a method's sample counts, ascending in time where noise allows it.
+/// A seed's time and metric at each of a method's sample counts; neither need rise or fall all the way, for both have noise.
 struct TimeCurve {
     std::vector<double> ms, value;
 };
@@ -70,12 +70,7 @@ struct SeedEqual {
 };
 
 SeedEqual equalOf(const TimeCurve& other, double ms, double value, bool higher) {
-    SeedEqual equal;
-    if (std::is_sorted(other.ms.begin(), other.ms.end())) equal.otherAtTime = logLogAt(other.ms, other.value, ms);
-    TimeCurve byValue = other;
-    if (!higher) std::reverse(byValue.ms.begin(), byValue.ms.end()), std::reverse(byValue.value.begin(), byValue.value.end());
-    if (std::is_sorted(byValue.value.begin(), byValue.value.end())) equal.otherMs = logLogAt(byValue.value, byValue.ms, value);
-    return equal;
+    return {logLogAt(other.ms, other.value, ms), logLogAt(other.value, other.ms, value, higher ? Course::Rising : Course::Falling)};
 }
 
 void addPair(const Study& study, const StudyRowIndex& rows, const StudyMeanTime& time, size_t other, const std::string& metric,

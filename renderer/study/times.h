@@ -17,7 +17,7 @@ struct StudyMeanTime {
 };
 
 /// What the other of a pair reaches in a method's time, and how long it takes to reach its value; by straight lines between
-/// the other's sample counts, in log-log space. Of seeds where the other's sample counts do not reach so far nothing is
+/// the other's sample counts, in log-log space, between the largest ones that enclose it. Of seeds where the other's sample counts do not reach so far nothing is
 /// known; the counts say how many those are.
 struct StudyEqual {
     size_t scene = 0, method = 0, against = 0;

@@ -122,6 +122,12 @@ class Results(StudyTest):
         self.assertEqual(bad.code, 1, bad.err)
         self.assertRegex(bad.out, r"SSIM of raw at least 0.99 +cornell .* fails")
         self.assertIn("0 jobs run, ", bad.err)
+        entries = [{"name": "raw", "module": "none"}, {"name": "more", "module": "none", "spp": [4]}]
+        unknown = self.run_program("study", self.write(entries=entries, tuning=None, ablations=None, figures=None, pairs=None, spp=[1],
+                                                       checks=[{"entry": "raw", "metric": "mse", "against": ["more"], "at-most": 9}]),
+                                   "--out", "unknown", **self.environment())
+        self.assertEqual(unknown.code, 1, unknown.err)
+        self.assertRegex(unknown.out, r"cornell +1 .* more .* unknown")
 
     def test_figures_and_tables_for_the_paper(self):
         name = self.write()

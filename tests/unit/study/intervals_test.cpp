@@ -54,6 +54,21 @@ TEST(Intervals, HoldTheTrueMeanAsOftenAsTheySay) {
     }
 }
 
+/// Of two to five units every resample has the sign that all of them happen to have: noise must not be ranked by that.
+TEST(Intervals, ResamplesOfAFewUnitsRankNoNoise) {
+    constexpr int trials = 400;
+    for (int size = 2; size <= 5; ++size) {
+        int ranked = 0;
+        for (int t = 0; t < trials; ++t) {
+            std::vector<std::vector<double>> values(2, std::vector<double>(static_cast<size_t>(size)));
+            for (int i = 0; i < 2 * size; ++i) values[static_cast<size_t>(i & 1)][static_cast<size_t>(i / 2)] = normal(static_cast<uint64_t>((size * trials + t) * 16 + i));
+            ranked += rankMethods(values, false, 0.95, IntervalMethod::Bootstrap)[0].certain();
+        }
+        EXPECT_LE(ranked / double(trials), 0.08) << size << " units";
+    }
+    EXPECT_TRUE(meanInterval(std::vector<double>{1, 1.1, 0.9, 1, 1.2, 0.8}, 0.95, IntervalMethod::Bootstrap).excludesZero());
+}
+
 TEST(Intervals, PairsRemoveWhatBothShare) {
     // Differences 1, 1, 1.2: clearly above 0, though the values themselves spread over ten.
     const std::vector<double> a{11, 1, 6.2}, b{10, 0, 5};
@@ -163,6 +178,15 @@ TEST(Slopes, AreThoseOfPowers) {
     EXPECT_NEAR(logLogAt(n, error, 8), 3 / std::sqrt(8.0), 1e-12);
     EXPECT_EQ(logLogAt(n, error, 4), error[1]);
     EXPECT_TRUE(std::isnan(logLogAt(n, error, 65)));
+}
+
+/// One wiggle in a curve leaves the rest of it in range: what counts is the last crossing.
+TEST(Slopes, ACurveThatTurnsBackIsReadFromItsEnd) {
+    const std::vector<double> spp{1, 2, 4, 8, 16}, error{0.1914, 0.1347, 0.14, 0.09, 0.095};
+    EXPECT_NEAR(logLogAt(error, spp, 0.1909, Course::Falling), 1.005, 0.001);
+    const double crossed = logLogAt(error, spp, 0.137, Course::Falling);
+    EXPECT_TRUE(4 < crossed && crossed < 8) << "reached at 2 spp, lost again, and reached for good after 4";
+    EXPECT_TRUE(std::isnan(logLogAt(error, spp, 0.2, Course::Falling)) && std::isnan(logLogAt(error, spp, 0.05, Course::Falling)));
 }
 
 }  // namespace

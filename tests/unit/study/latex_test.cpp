@@ -163,5 +163,21 @@ TEST(Times, EqualTimeAndEqualErrorHaveIntervals) {
     EXPECT_EQ(times.stages.size(), 4u);
 }
 
+/// A wiggle in the other's curve, above or below the value, puts it not out of range.
+TEST(Times, EqualErrorIsFoundOnACurveThatTurnsBack) {
+    Sample sample;
+    sample.study.spp = {1, 2, 4};
+    for (const int seed : sample.study.seeds)
+        for (size_t method = 0; method < 2; ++method) sample.add(0, 4, seed, method);
+    for (StudyRow& row : sample.records.rows)
+        if (row.scene == 0 && row.method == 1 && row.spp == 4) row.metrics["mse"] = 1.1;  // 2.01 at 1 spp and 1.005 at 2
+    const StudyTimes times = summarizeTimes(sample.study, sample.plan, sample.records);
+    const auto found = std::find_if(times.pairs.begin(), times.pairs.end(), [](const StudyEqual& equal) {
+        return equal.scene == 0 && equal.spp == 1 && equal.metric == "mse";
+    });
+    ASSERT_NE(found, times.pairs.end());
+    EXPECT_EQ(found->otherMsAtEqualValue.count, 4);
+}
+
 }  // namespace
 }  // namespace lumi::test

@@ -191,7 +191,9 @@ TEST(Results, ClaimsHoldOrNotOrNobodyKnows) {
         EXPECT_TRUE(result.ratio.low < result.ratio.mean && result.ratio.mean < result.ratio.high);
         EXPECT_EQ(result.against, b);
     }
-    EXPECT_EQ(claim("a", "mse", {b}, 0.5)[0].verdict, Verdict::Fails);
+    EXPECT_EQ(claim("a", "mse", {b}, 0.4)[0].verdict, Verdict::Fails);
+    EXPECT_EQ(claim("a", "mse", {b}, 0.5)[0].verdict, Verdict::FailsWithinNoise) << "0.005, 0.010 and 0.015 beyond";
+    EXPECT_FALSE(claim("a", "mse", {b}, 0.5)[0].asClaimed());
     EXPECT_EQ(claim("a", "mse", {b}, 1.02 / 2.02 + 1e-9)[0].verdict, Verdict::WithinNoise) << "right at the bound nothing tells";
     EXPECT_EQ(claim("a", "ssim", {b}, 1, true)[0].verdict, Verdict::Holds);
     EXPECT_EQ(claim(b, "ssim", {"a"}, 1, true)[0].verdict, Verdict::Fails);
@@ -201,6 +203,22 @@ TEST(Results, ClaimsHoldOrNotOrNobodyKnows) {
     EXPECT_EQ(checkClaims(s.study, s.plan, s.records).size(), 3u);
     for (StudyRow& row : s.records.rows) row.corrected.clear(), row.metrics["mse"] = NAN;
     EXPECT_EQ(claim("a", "mse", {b}, 2)[0].verdict, Verdict::Unknown) << "no value holds nothing";
+}
+
+/// What a claim is held against and does not run at that sample count makes it unknown; it never goes unsaid.
+TEST(Results, AClaimAgainstWhatDidNotRunIsUnknown) {
+    Sample s = sample();
+    for (StudyRow& row : s.records.rows) row.frame = -1;
+    StudyCheck check;
+    check.entry = "a", check.metric = "mse", check.against = {s.study.entries[1].name}, check.bound = 5;
+    s.study.checks = {check};
+    std::erase_if(s.records.rows, [](const StudyRow& row) { return row.method == 1 && row.spp == 4; });
+    const std::vector<StudyCheckResult> results = checkClaims(s.study, s.plan, s.records);
+    ASSERT_EQ(results.size(), 2u * 3);
+    for (const StudyCheckResult& result : results)
+        EXPECT_EQ(result.verdict, result.spp == 4 ? StudyCheckResult::Verdict::Unknown : StudyCheckResult::Verdict::Holds);
+    s.study.checks[0].metric = "flip";
+    for (const StudyCheckResult& result : checkClaims(s.study, s.plan, s.records)) EXPECT_FALSE(result.asClaimed()) << "nothing was judged";
 }
 
 TEST(Results, JsonHoldsNoNumberThatJsonCannot) {

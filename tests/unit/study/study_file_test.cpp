@@ -40,9 +40,9 @@ TEST(StudyFile, EverythingIsRead) {
       "spp": [1, 4], "seeds": [7, 8], "reference": {"spp": 64, "set": {"path.max-depth": 9}},
       "metrics": ["ssim", "mse", "lag"], "tuning": {"frame": 8, "metric": "mse", "seed": 5},
       "entries": [{"name": "a", "module": "accumulate", "set": {"limit": true, "path.clamp": false}, "tune": {"max-samples": [2, 4]}},
-                  {"module": "none", "spp": 2}],
+                  {"module": "none", "spp": 2}, {"name": "b", "module": "none"}],
       "sweep": {"axes": {"component": ["direct", "indirect"]}, "entries": ["none"]},
-      "checks": [{"title": "C", "entry": "a", "metric": "mse", "against": ["none"], "at-most": 1.03, "on-average": true}],
+      "checks": [{"title": "C", "entry": "a", "metric": "mse", "against": ["b"], "at-most": 1.03, "on-average": true}],
       "metric-settings": {"relmse-epsilon": 0.01, "hdr-flip-exposures": [-2, 3]},
       "pairs": [{"entry": "a", "against": "none"}],
       "ablations": [{"entry": "a", "stages": [{"name": "limit", "set": {"limit": false}}]}],
@@ -61,6 +61,7 @@ TEST(StudyFile, EverythingIsRead) {
     EXPECT_EQ(study.sweep->axes[0].id, "component");
     EXPECT_EQ(study.tuning->seed, 5);
     EXPECT_EQ(study.checks.at(0).bound, 1.03);
+    EXPECT_EQ(study.checks.at(0).against, std::vector<std::string>{"b"});
     EXPECT_TRUE(study.checks.at(0).onAverage && !study.checks.at(0).atLeast);
     EXPECT_EQ(study.metricSettings.relMseEpsilon, 0.01);
     EXPECT_EQ(*study.metricSettings.flipExposures, FlipExposures::over(-2, 3));
@@ -142,6 +143,9 @@ TEST(StudyFile, StepsAblationsAndFiguresAreChecked) {
     refused(member(R"("checks": [{"entry": "none", "metric": "rmse"}])"), {"either \"at-most\" or \"at-least\""});
     refused(member(R"("checks": [{"entry": "none", "metric": "ssim", "at-least": 1}])"), {"unknown metric of the study \"ssim\""});
     refused(member(R"("checks": [{"entry": "none", "metric": "rmse", "at-most": 1, "against": ["nonne"]}])"), {"unknown entry", "\"none\""});
+    const std::string swept = R"("sweep": {"axes": {"limit": [true, false]}, "entries": ["accumulate"]}, )";
+    refused(member(swept + R"("checks": [{"entry": "accumulate", "metric": "rmse", "at-most": 1}])"), {"\"entry\"", "an entry that is not swept", ":3:"});
+    refused(member(swept + R"("checks": [{"entry": "none", "metric": "rmse", "against": ["accumulate"], "at-most": 1}])"), {"\"against\"", "an entry that is not swept"});
     refused(member(R"("metric-settings": {"relmse-epsilon": 0})"), {"\"relmse-epsilon\" is 0"});
     refused(member(R"("metric-settings": {"hdr-flip-exposures": [3, -2]})"), {"\"hdr-flip-exposures\"", "[start, stop]"});
     refused(member(R"("figures": [{"name": "a b", "crops": [{"box": [0,0,1,1]}]}, {"name": "a-b", "crops": [{"box": [0,0,1,1]}]}])"), {"two figures are called"});
