@@ -11,9 +11,6 @@
 namespace lumi {
 namespace {
 
-/// More do not fit a page.
-constexpr size_t kMostColumns = 8;
-
 Image readColour(const std::filesystem::path& path) { return readExr(path).image("", "RGB"); }
 
 Image8 shown(const Image& image, const char* channels, const DisplaySettings& settings) {
@@ -38,7 +35,7 @@ std::vector<size_t> methodsOf(const Study& study, const StudyPlan& plan, const S
     const auto add = [&](const std::string& name) {
         for (size_t i = 0; i < plan.methods.size(); ++i) {
             if (study.entries[plan.methods[i].entry].name != name || plan.methods[i].whole) continue;
-            if (!std::count(methods.begin(), methods.end(), i) && methods.size() < kMostColumns) methods.push_back(i);
+            if (!std::count(methods.begin(), methods.end(), i)) methods.push_back(i);
             return;
         }
     };

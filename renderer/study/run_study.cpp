@@ -115,6 +115,11 @@ private:
         json times;
         const json result = job.kind == StudyJob::Kind::Tune ? runTuneJob(context, job)
                                                              : runMeasureJob(context, job, folder, options_.out, times);
+        if (result.contains("references")) {
+            std::set<std::string> files;
+            for (const json& reference : result["references"]) files.insert(reference.at("file").get<std::string>());
+            folder_.note(files);
+        }
         writeFileAtomically(folder / "times.json", std::string_view(times.dump(1)));
         writeFileAtomically(folder / "job.json", std::string_view(result.dump(1)));
         ++outcome_.jobsRun;
@@ -154,15 +159,22 @@ private:
         options_.progress(progress);
     }
 
+    /// References, figures and tables of the study as it is now.
+    std::set<std::string> filesBeside(const std::vector<DrawnFigure>& figures, const std::vector<LatexTable>& tables) const {
+        std::set<std::string> files{"tables/all.tex"};
+        for (const DrawnFigure& figure : figures) files.insert({"figures/" + figure.name + ".png", "figures/" + figure.name + ".svg"});
+        for (const LatexTable& table : tables) files.insert("tables/" + table.name + ".tex");
+        for (const StudyReferenceNote& note : outcome_.records.references) files.insert(note.file);
+        return files;
+    }
+
     void finish() {
         outcome_.summaries = summarize(study_, plan_, outcome_.records);
         outcome_.times = summarizeTimes(study_, plan_, outcome_.records);
         outcome_.checks = checkClaims(study_, plan_, outcome_.records);
-        std::set<std::string> kept;
         const auto write = [&](const std::string& name, std::span<const uint8_t> bytes) {
             writeFileAtomically(options_.out / name, bytes);
             outcome_.files.push_back(options_.out / name);
-            kept.insert(fs::path(name).filename().string());
         };
         const auto writeText = [&](const std::string& name, const std::string& text) {
             write(name, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
@@ -171,6 +183,8 @@ private:
         const auto times = timingsJson(study_, plan_, outcome_.times);
         const std::vector<DrawnFigure> figures = drawFigures(study_, plan_, outcome_.records, log_);
         const std::vector<LatexTable> tables = latexTables(study_, plan_, outcome_.summaries, outcome_.times);
+        const std::set<std::string> kept = filesBeside(figures, tables);
+        folder_.note(kept);
         for (const DrawnFigure& figure : figures) {
             write("figures/" + figure.name + ".png", figure.png);
             writeText("figures/" + figure.name + ".svg", figure.svg);
@@ -181,7 +195,6 @@ private:
         writeText("timings.json", times.dump(1) + "\n");
         writeText("report.html", studyReport(study_, plan_, outcome_.records, {results, times, figures, tables}));
         writeText("results.json", results.dump(1) + "\n");
-        for (const StudyReferenceNote& note : outcome_.records.references) kept.insert(fs::path(note.file).filename().string());
         folder_.keepOnly({folders_.begin(), folders_.end()}, kept);
         outcome_.study = study_;
         outcome_.plan = plan_;

@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "measure/measure.h"
 #include "reconstruct/catalog.h"
+#include "study/plan.h"
 #include "study/study_reader.h"
 #include "study/temporal_metrics.h"
 
@@ -26,6 +27,17 @@ void refuseTwin(const JsonTree& tree, const JsonValue& at, const std::vector<Thi
                 const char* kind) {
     for (const Thing& thing : earlier)
         if (thing.name == name) throwBadInput({fmt::format("two {} are called \"{}\"", kind, name), tree.where(at.at), "", ""});
+}
+
+/// Tables and references are files named after their scene, those of all scenes together `all-scenes`.
+void refuseTwinFiles(const JsonTree& tree, const JsonValue& at, const std::vector<StudyScene>& earlier, const std::string& name) {
+    const std::string file = fileNameOf(name);
+    if (name == "all" || file == "all-scenes")
+        throwBadInput({fmt::format("a scene cannot be called \"{}\"", name), tree.where(at.at), "another name: this one is for the mean over all scenes", ""});
+    for (const StudyScene& scene : earlier)
+        if (fileNameOf(scene.name) == file)
+            throwBadInput({fmt::format("files of scenes \"{}\" and \"{}\" would have one name", scene.name, name), tree.where(at.at),
+                           "names that differ in letters or digits", ""});
 }
 
 std::vector<StudyScene> readScenes(const JsonTree& tree, const JsonValue& section) {
@@ -47,6 +59,7 @@ std::vector<StudyScene> readScenes(const JsonTree& tree, const JsonValue& sectio
         if (scene.name.empty()) scene.name = fs::path(scene.source.substr(scene.source.find(':') + 1)).stem().string();
         checkFileName(tree, item, scene.name);
         refuseTwin(tree, item, scenes, scene.name, "scenes");
+        refuseTwinFiles(tree, item, scenes, scene.name);
         scenes.push_back(std::move(scene));
     }
     return scenes;

@@ -17,6 +17,22 @@ using nlohmann::json;
 namespace {
 
 constexpr const char* kLabel = "study.json";
+constexpr const char* kFolders[] = {"references", "figures", "tables"};
+
+/// May the label speak of this file? Whatever stands in it, nothing outside these folders is touched.
+bool isInOurFolders(const std::string& file) {
+    const fs::path path(file);
+    for (const char* folder : kFolders)
+        if (path.parent_path() == folder && path.filename() != ".." && path.filename() != ".") return true;
+    return false;
+}
+
+/// The file of which an interrupted writeFileAtomically() left this part: `<file>.<process>.<number>.tmp`.
+std::string wholeOf(std::string part) {
+    if (!part.ends_with(".tmp")) return "";
+    for (int i = 0; i < 3 && !part.empty(); ++i) part.resize(std::min(part.size(), part.rfind('.') == std::string::npos ? 0 : part.rfind('.')));
+    return part;
+}
 
 /// What an interrupted writeFileAtomically() left of one of ours.
 bool isOurPart(const std::string& name) {
@@ -32,11 +48,11 @@ std::string shownStudy(const std::string& name, const std::string& preset) {
 
 }  // namespace
 
-StudyFolder::StudyFolder(const Study& study, fs::path path) : path_(std::move(path)) {
+StudyFolder::StudyFolder(const Study& study, fs::path path) : path_(std::move(path)), study_(study.name), preset_(study.preset) {
     std::error_code failure;
     fs::create_directories(path_, failure);
     if (!fs::is_directory(path_, failure)) throwUsage({"cannot be made", path_.string(), "a folder for results", ""});
-    claim(study);
+    claim();
     const fs::path lock = path_ / ".lock";
     lock_ = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (lock_ < 0) throwUsage({"cannot be written", path_.string(), "a folder for results", ""});
@@ -47,25 +63,40 @@ StudyFolder::StudyFolder(const Study& study, fs::path path) : path_(std::move(pa
 
 StudyFolder::~StudyFolder() { ::close(lock_); }
 
-void StudyFolder::claim(const Study& study) const {
-    const json own = {{"study", study.name}, {"preset", study.preset}};
+void StudyFolder::claim() {
     const fs::path label = path_ / kLabel;
     if (fs::exists(label)) {
-        const json found = json::parse(readTextFile(label, 1 << 16), nullptr, false);
+        const json found = json::parse(readTextFile(label, 1 << 24), nullptr, false);
         const auto text = [&](const char* key) {
             return found.is_object() && found.contains(key) && found[key].is_string() ? found[key].get<std::string>() : "";
         };
-        if (text("study") == study.name && text("preset") == study.preset) return;
-        throwUsage({fmt::format("holds the study {}", shownStudy(text("study"), text("preset"))), path_.string(),
-                    "another folder for " + shownStudy(study.name, study.preset), ""});
+        if (text("study") != study_ || text("preset") != preset_)
+            throwUsage({fmt::format("holds the study {}", shownStudy(text("study"), text("preset"))), path_.string(),
+                        "another folder for " + shownStudy(study_, preset_), ""});
+        if (found.contains("files") && found["files"].is_array())
+            for (const json& file : found["files"])
+                if (file.is_string() && isInOurFolders(file)) files_.insert(file.get<std::string>());
+        return;
     }
     for (const fs::directory_entry& entry : fs::directory_iterator(path_))
         if (const std::string name = entry.path().filename().string(); name != ".lock" && !isOurPart(name))
             throwUsage({fmt::format("holds \"{}\", which no study wrote", name), path_.string(), "an empty folder, or a new one", ""});
-    writeFileAtomically(label, std::string_view(own.dump(1) + "\n"));
+    writeLabel();
 }
 
-void StudyFolder::keepOnly(const std::set<std::string>& jobs, const std::set<std::string>& files) const {
+void StudyFolder::writeLabel() const {
+    const json own = {{"study", study_}, {"preset", preset_}, {"files", files_}};
+    writeFileAtomically(path_ / kLabel, std::string_view(own.dump(1) + "\n"));
+}
+
+void StudyFolder::note(const std::set<std::string>& files) {
+    const size_t before = files_.size();
+    files_.insert(files.begin(), files.end());
+    if (files_.size() > before) writeLabel();
+}
+
+void StudyFolder::keepOnly(const std::set<std::string>& jobs, const std::set<std::string>& files) {
+    note(files);
     std::error_code ignored;
     std::vector<fs::path> others;
     for (const fs::directory_entry& entry : fs::directory_iterator(path_, ignored))
@@ -74,10 +105,15 @@ void StudyFolder::keepOnly(const std::set<std::string>& jobs, const std::set<std
         if (!jobs.contains(entry.path().filename().string())) others.push_back(entry.path());
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path_ / "jobs", ignored))
         if (entry.path().extension() == ".tmp") others.push_back(entry.path());
-    for (const char* folder : {"references", "figures", "tables"})
+    for (const char* folder : kFolders)
         for (const fs::directory_entry& entry : fs::directory_iterator(path_ / folder, ignored))
-            if (!files.contains(entry.path().filename().string())) others.push_back(entry.path());
+            if (files_.contains(wholeOf(entry.path().lexically_relative(path_).generic_string()))) others.push_back(entry.path());
+    for (const std::string& file : files_)
+        if (!files.contains(file)) others.push_back(path_ / file);
     for (const fs::path& path : others) fs::remove_all(path, ignored);
+    if (files_ == files) return;
+    files_ = files;
+    writeLabel();
 }
 
 }  // namespace lumi

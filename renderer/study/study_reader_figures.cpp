@@ -10,6 +10,9 @@
 namespace lumi {
 namespace {
 
+/// Columns of a figure: more do not fit a page.
+constexpr size_t kMostColumns = 8;
+
 StudyAblation::Stage readStage(const JsonTree& tree, const JsonValue& item, const StudyEntry& entry) {
     ObjectReader reader(tree, item, "stage");
     StudyAblation::Stage stage;
@@ -73,6 +76,16 @@ void readWhere(const JsonTree& tree, ObjectReader& reader, const Study& study, S
         for (const JsonValue& item : entries->items) figure.entries.push_back(readEntryName(tree, item, study, "entries"));
     }
     if (const JsonValue* metric = reader.find("metric")) figure.metric = readMapMetric(tree, *metric);
+}
+
+/// Refuses a figure that would have to leave entries out.
+void checkColumns(const JsonTree& tree, const JsonValue& item, const Study& study, const StudyFigure& figure) {
+    const std::vector<std::string>& entries = figure.entries;
+    size_t columns = entries.empty() ? study.entries.size() : entries.size();
+    columns += !entries.empty() && !figure.input.empty() && !std::count(entries.begin(), entries.end(), figure.input);
+    if (columns > kMostColumns)
+        throwBadInput({fmt::format("figure \"{}\" would show {} entries", figure.name, columns), tree.where(item.at),
+                       fmt::format("at most {}, chosen by \"entries\"", kMostColumns), ""});
 }
 
 bool isSwept(const Study& study, const std::string& entry) {
@@ -170,6 +183,7 @@ void readFigures(const JsonTree& tree, const JsonValue* section, Study& study) {
             if (fileNameOf(earlier.name) == fileNameOf(figure.name))
                 throwBadInput({fmt::format("two figures are called \"{}\"", figure.name), tree.where(name.at), "", ""});
         readWhere(tree, reader, study, figure);
+        checkColumns(tree, item, study, figure);
         const JsonValue& crops = reader.need("crops");
         if (!crops.isArray() || crops.items.empty() || crops.items.size() > 6)
             refuseValue(tree, crops, "crops", "an array of one to six crops");

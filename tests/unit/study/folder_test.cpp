@@ -42,12 +42,33 @@ TEST(StudyFolder, StrangeFilesAreNeverTouched) {
 
 TEST(StudyFolder, KeepsWhatIsNamed) {
     TemporaryFolder folder;
-    const StudyFolder out(named("one"), folder / "out");
-    for (const char* name : {"jobs/a/job.json", "jobs/a/x.exr.tmp", "jobs/b/job.json", "references/r.exr", "references/old.exr", "figures/f.png", "tables/t.tex", "results.csv"})
-        writeFileAtomically(out.path() / name, std::string_view("x"));
-    out.keepOnly({"a"}, {"r.exr", "f.png"});
-    for (const char* kept : {"jobs/a/job.json", "references/r.exr", "figures/f.png", "results.csv", "study.json"}) EXPECT_TRUE(std::filesystem::exists(out.path() / kept)) << kept;
-    for (const char* gone : {"jobs/b", "jobs/a/x.exr.tmp", "references/old.exr", "tables/t.tex"}) EXPECT_FALSE(std::filesystem::exists(out.path() / gone)) << gone;
+    {
+        StudyFolder first(named("one"), folder / "out");
+        for (const char* name : {"jobs/a/job.json", "jobs/a/x.exr.tmp", "jobs/b/job.json", "references/r.exr", "references/old.exr",
+                                 "figures/f.png", "figures/f.png.1.2.tmp", "tables/t.tex", "results.csv"})
+            writeFileAtomically(first.path() / name, std::string_view("x"));
+        first.note({"references/r.exr", "references/old.exr", "figures/f.png", "tables/t.tex"});
+    }
+    // What somebody put beside them, a paper made of the tables for one.
+    for (const char* name : {"tables/all.pdf", "figures/mine.png", "figures/mine.png.1.2.tmp", "references/mine/r.exr"})
+        writeFileAtomically(folder / "out" / name, std::string_view("mine"));
+    StudyFolder out(named("one"), folder / "out");
+    out.keepOnly({"a"}, {"references/r.exr", "figures/f.png"});
+    for (const char* kept : {"jobs/a/job.json", "references/r.exr", "figures/f.png", "results.csv", "study.json", "tables/all.pdf", "figures/mine.png",
+                             "figures/mine.png.1.2.tmp", "references/mine/r.exr"})
+        EXPECT_TRUE(std::filesystem::exists(out.path() / kept)) << kept;
+    for (const char* gone : {"jobs/b", "jobs/a/x.exr.tmp", "references/old.exr", "figures/f.png.1.2.tmp", "tables/t.tex"})
+        EXPECT_FALSE(std::filesystem::exists(out.path() / gone)) << gone;
+}
+
+/// Whatever the label lists, nothing outside the three folders is removed.
+TEST(StudyFolder, TheLabelCannotNameOtherFiles) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "precious", std::string_view("mine"));
+    writeFileAtomically(folder / "out" / "study.json", std::string_view(R"({"study": "one", "preset": "", "files": ["../precious", "tables/..", "references/../../precious", 7]})"));
+    StudyFolder out(named("one"), folder / "out");
+    out.keepOnly({}, {});
+    EXPECT_TRUE(std::filesystem::exists(folder / "precious") && std::filesystem::exists(out.path() / "study.json"));
 }
 
 /// Two scenes, two seeds, a reference each: frames take 1 s in the first scene and 3 s in the second, references 10 s.

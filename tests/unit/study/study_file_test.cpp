@@ -149,6 +149,19 @@ TEST(StudyFile, StepsAblationsAndFiguresAreChecked) {
     refused(member(R"("metric-settings": {"relmse-epsilon": 0})"), {"\"relmse-epsilon\" is 0"});
     refused(member(R"("metric-settings": {"hdr-flip-exposures": [3, -2]})"), {"\"hdr-flip-exposures\"", "[start, stop]"});
     refused(member(R"("figures": [{"name": "a b", "crops": [{"box": [0,0,1,1]}]}, {"name": "a-b", "crops": [{"box": [0,0,1,1]}]}])"), {"two figures are called"});
+    std::string many = R"({"module": "none"})";
+    for (int i = 0; i < 8; ++i) many += ", {\"name\": \"e" + std::to_string(i) + "\", \"module\": \"none\"}";
+    const std::string strip = R"("figures": [{"name": "f", "crops": [{"box": [0,0,1,1]}])";
+    refused(withMember(strip + "}]", many), {"figure \"f\" would show 9 entries", "at most 8", ":3:"});
+    EXPECT_EQ(parse(withMember(strip + R"(, "entries": ["none", "e7"]}])", many)).figures.at(0).entries.size(), 2u);
+}
+
+TEST(StudyFile, ScenesHaveFilesOfTheirOwn) {
+    const auto scenes = [](const std::string& list) { return "{\"version\": 1, \"entries\": [{\"module\": \"none\"}], \"scenes\": [" + list + "]}"; };
+    refused(scenes(R"({"scene": "room", "name": "a b"}, {"scene": "room", "name": "a-b"})"), {"\"a b\" and \"a-b\"", "t.json:1:"});
+    refused(scenes(R"({"scene": "room", "name": "all scenes"})"), {"cannot be called \"all scenes\""});
+    refused(scenes(R"({"scene": "room", "name": "all"})"), {"cannot be called \"all\""});
+    EXPECT_EQ(parse(scenes(R"({"scene": "room", "name": "a b"}, {"scene": "room", "name": "a-c"})")).scenes.size(), 2u);
 }
 
 /// The shape of a paper's table: scenes with parameters, one of which may be missing, baselines that are tuned on a frame that
