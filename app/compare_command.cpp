@@ -4,31 +4,18 @@
 
 #include "app/compare_parts.h"
 #include "base/error.h"
-#include "frame/display.h"
-#include "image/exr.h"
-#include "image/png.h"
 #include "measure/temporal.h"
 
 namespace lumi {
 using nlohmann::ordered_json;
 
-void writeMap(const std::filesystem::path& folder, const std::string& name, const char* colours, const Image& map) {
-    ExrLayers layers;
-    layers.add("", "Y", map);
-    writeExr(folder / (name + ".exr"), layers);
-    DisplaySettings settings;
-    Image8 picture;
-    convert(map, "Y", colours, settings, picture);
-    writePng(folder / (name + ".png"), picture);
-}
-
-MetricResults measureAll(const CompareOptions& options, const std::vector<const Metric*>& metrics, const ImagePair& pair,
+MetricResults measureAll(const std::vector<const Metric*>& metrics, const ImagePair& pair, ErrorMaps& maps,
                          const std::string& suffix) {
     MetricResults results;
     for (const Metric* metric : metrics) {
-        const bool map = !options.maps.empty() && metric->mapColours;
+        const bool map = maps.wanted() && metric->mapColours;
         results.emplace_back(metric, metric->measure(pair, map));
-        if (map) writeMap(options.maps, metric->id + suffix, metric->mapColours, results.back().second.map);
+        if (map) maps.add(metric->id, suffix, metric->mapColours, results.back().second.map);
     }
     return results;
 }
@@ -50,7 +37,7 @@ std::string valueText(double value) { return std::isnan(value) ? "-" : fmt::form
 
 namespace {
 
-void printTable(const ComparedPair& compared, const MetricResults& results) {
+void printTable(const ComparedPair& compared, const MetricResults& results, const ErrorMaps& maps) {
     const ImagePair& pair = compared.pair;
     for (const auto& [metric, result] : results) {
         fmt::print("{:<10} {:<12} {}\n", metric->id, valueText(result.value),
@@ -60,15 +47,17 @@ void printTable(const ComparedPair& compared, const MetricResults& results) {
     fmt::print("\n{}x{}, {} pixels count; not finite: {} in the image, {} in the reference; exposure {:g} EV ({})\n",
                pair.image.width(), pair.image.height(), pair.countedPixels, pair.nonFiniteImage, pair.nonFiniteReference,
                compared.exposure.ev, compared.exposure.from);
+    if (maps.wanted()) fmt::print("{}\n", maps.text());
 }
 
-void printJson(const ComparedPair& compared, const MetricResults& results) {
+void printJson(const ComparedPair& compared, const MetricResults& results, const ErrorMaps& maps) {
     ordered_json report = {{"width", compared.pair.image.width()}, {"height", compared.pair.image.height()}};
     addCounts(report, compared.pair);
     report["exposure"] = compared.exposure.ev;
     report["exposure_from"] = compared.exposure.from;
     for (const char* key : {"metrics", "details", "no_value"}) report[key] = ordered_json::object();
     for (const auto& [metric, result] : results) addMeasurement(report, metric->id, result);
+    if (maps.wanted()) report["maps"] = maps.ranges();
     fmt::print("{}\n", report.dump(2));
 }
 
@@ -87,10 +76,11 @@ int runCompare(const CompareOptions& options) {
         for (const Metric& metric : metricCatalog()) wanted.push_back(&metric);
 
     const ComparedPair compared = loadPair(options, options.image, options.reference, false);
-    if (!options.maps.empty()) std::filesystem::create_directories(options.maps);
-    const MetricResults results = measureAll(options, wanted, compared.pair, "");
-    if (options.json) printJson(compared, results);
-    else printTable(compared, results);
+    ErrorMaps maps(options.maps);
+    const MetricResults results = measureAll(wanted, compared.pair, maps, "");
+    maps.finish();
+    if (options.json) printJson(compared, results, maps);
+    else printTable(compared, results, maps);
     if (options.quiet) return 0;
     if (!compared.exposure.warning.empty()) fmt::print(stderr, "warning: {}\n", compared.exposure.warning);
     if (compared.pair.nonFinitePixels > 0)

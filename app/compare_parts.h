@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/compare_command.h"
+#include "app/error_maps.h"
 
 namespace lumi {
 
@@ -29,11 +30,9 @@ ComparedPair loadPair(const CompareOptions& options, const std::filesystem::path
                       const std::filesystem::path& reference, bool layers);
 
 using MetricResults = std::vector<std::pair<const Metric*, Measurement>>;
-/// Measures, and writes maps as `<metric><suffix>.exr` and .png where they are asked for.
-MetricResults measureAll(const CompareOptions& options, const std::vector<const Metric*>& metrics, const ImagePair& pair,
+/// Measures, and adds the maps where they are wanted.
+MetricResults measureAll(const std::vector<const Metric*>& metrics, const ImagePair& pair, ErrorMaps& maps,
                          const std::string& suffix);
-/// The error map as it is (.exr) and in false colour (.png).
-void writeMap(const std::filesystem::path& folder, const std::string& name, const char* colours, const Image& map);
 /// Adds a measurement to the members "metrics", "details" and "no_value" (why a number is NaN or infinite, which is null).
 void addMeasurement(nlohmann::ordered_json& report, const std::string& id, const Measurement& measurement);
 /// Members "nonfinite_pixels" (of the two together), "nonfinite_image", "nonfinite_reference" and "counted_pixels".

@@ -67,7 +67,7 @@ struct Frame {
 
 class SequenceComparison {
 public:
-    explicit SequenceComparison(const CompareOptions& options) : options_(options), wanted_(wantedMetrics(options.metrics)) {}
+    explicit SequenceComparison(const CompareOptions& options) : options_(options), wanted_(wantedMetrics(options.metrics)), maps_(options.maps) {}
 
     int run() {
         findFrames();
@@ -75,9 +75,10 @@ public:
         if (wanted_.temporal) report_.ids.emplace_back("temporal");
         if (wanted_.reprojected) report_.ids.emplace_back("temporal_reprojected");
         report_.lagWanted = wanted_.lag;
-        if (!options_.maps.empty()) fs::create_directories(options_.maps);
         for (const int64_t number : numbers_) compare(number);
         finishLag();
+        maps_.finish();
+        if (maps_.wanted()) report_.maps = maps_.ranges(), report_.mapsText = maps_.text();
         if (motionMissing_)
             report_.warnings.push_back("temporal_reprojected wants references with the layer motion (reference --buffers motion)");
         printSequence(report_, options_);
@@ -115,7 +116,7 @@ private:
         ordered_json entry = {{"frame", number}};
         addCounts(entry, pair);
         for (const char* key : {"metrics", "details"}) entry[key] = ordered_json::object();
-        for (const auto& [metric, result] : measureAll(options_, wanted_.images, pair, suffix(number)))
+        for (const auto& [metric, result] : measureAll(wanted_.images, pair, maps_, suffix(number)))
             addMeasurement(entry, metric->id, result);
         Frame now{std::move(compared.image), std::move(compared.reference), std::move(compared.depth), std::move(compared.motion)};
         if (previousNumber_ >= 0) addConsecutive(pair, now, number, entry);
@@ -159,8 +160,8 @@ private:
             if (previousNumber_ + 1 != number) none.reason = fmt::format("frame {} is missing", number - 1);
             else if (follow && now.motion.empty()) none.reason = "the reference holds no layer motion";
             if (!none.reason.empty()) return addMeasurement(entry, id, none);
-            const Measurement own = consecutive(pair, now, now.image, previous_.image, follow, !options_.maps.empty());
-            if (!options_.maps.empty()) writeMap(options_.maps, id + suffix(number), "magma", own.map);
+            const Measurement own = consecutive(pair, now, now.image, previous_.image, follow, maps_.wanted());
+            if (maps_.wanted()) maps_.add(id, suffix(number), "magma", own.map);
             addMeasurement(entry, id, own);
             const double reference = consecutive(pair, now, now.reference, previous_.reference, follow, false).value;
             entry["details"][id]["reference"] = std::isfinite(reference) ? ordered_json(reference) : ordered_json();
@@ -174,12 +175,13 @@ private:
         if (!wanted_.lag) return;
         report_.lag = lag_.result();
         const Image map = lag_.map();
-        if (!map.empty() && !options_.maps.empty()) writeMap(options_.maps, "lag", "magma", map);
+        if (!map.empty() && maps_.wanted()) maps_.add("lag", "", "magma", map);
     }
 
     const CompareOptions& options_;
     const WantedMetrics wanted_;
     std::vector<int64_t> numbers_;
+    ErrorMaps maps_;
     SequenceReport report_;
     LagSequence lag_;
     Frame previous_;

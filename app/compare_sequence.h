@@ -22,6 +22,8 @@ struct SequenceReport {
     std::vector<std::string> ids;  ///< of metrics that were asked for and have a value a frame
     bool lagWanted = false;
     Lag lag;
+    nlohmann::ordered_json maps;  ///< ErrorMaps::ranges(); null: none were wanted
+    std::string mapsText;
 };
 
 /// Means over the frames that have a value, and how many those are, by metric; lag stands beside them.

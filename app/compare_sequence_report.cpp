@@ -43,6 +43,7 @@ void printJson(const SequenceReport& report) {
         if (report.lag.stepFrame >= 0) all["details"]["lag"] = jsonOf(report.lag);
         if (!report.lag.reason.empty()) all["no_value"]["lag"] = report.lag.reason;
     }
+    if (!report.maps.is_null()) all["maps"] = report.maps;
     all["frames"] = report.frames;
     fmt::print("{}\n", all.dump(2));
 }
@@ -88,6 +89,7 @@ void printTable(const SequenceReport& report) {
     fmt::print("{}x{}, {} frames; not finite: {} pixels in the images, {} in the references; exposure {:g} EV ({})\n",
                report.width, report.height, report.frames.size(), report.nonFiniteImage, report.nonFiniteReference,
                report.exposureEv, report.exposureFrom);
+    if (!report.mapsText.empty()) fmt::print("{}\n", report.mapsText);
     for (const SequenceMean& mean : means) printLeftOut(report, mean);
     if (report.lagWanted) printLag(report.lag);
 }

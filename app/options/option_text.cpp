@@ -94,7 +94,9 @@ std::vector<std::string> splitList(const std::string& text) {
     std::vector<std::string> parts;
     for (size_t begin = 0; !text.empty() && begin <= text.size();) {
         const size_t end = std::min(text.find(',', begin), text.size());
-        parts.push_back(text.substr(begin, end - begin));
+        const std::string part = text.substr(begin, end - begin);
+        const size_t first = part.find_first_not_of(" \t"), last = part.find_last_not_of(" \t");
+        parts.push_back(first == std::string::npos ? "" : part.substr(first, last - first + 1));
         begin = end + 1;
     }
     return parts;

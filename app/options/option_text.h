@@ -27,7 +27,7 @@ std::pair<uint64_t, uint64_t> parseSamples(const std::string& text, const std::s
 FlipExposures parseFlipExposures(const std::string& text, const std::string& option);
 /// X,Y,W,H in pixels, with a width and a height.
 std::array<int, 4> parseCrop(const std::string& text, const std::string& option);
-/// The parts between commas; none of an empty text.
+/// The parts between commas, without the blanks around them; none of an empty text.
 std::vector<std::string> splitList(const std::string& text);
 /// Options that are parameters become values, in the order in which they take effect: those with a name of their own
 /// first, then --set as typed.

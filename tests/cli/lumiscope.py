@@ -98,6 +98,34 @@ def write_png(path, width, height, colour):
                      chunk(b"IEND", b""))
 
 
+def read_png(data):
+    """Rows of (r, g, b) of an 8-bit RGB or RGBA file without interlacing."""
+    position, packed = 8, b""
+    while position < len(data):
+        length, kind = struct.unpack(">I4s", data[position:position + 8])
+        body = data[position + 8:position + 8 + length]
+        position += 12 + length
+        if kind == b"IHDR":
+            width, height, depth, colour = struct.unpack(">IIBB", body[:10])
+            assert depth == 8 and colour in (2, 6)
+        if kind == b"IDAT":
+            packed += body
+    step = 3 if colour == 2 else 4
+    raw, stride, rows = zlib.decompress(packed), width * step + 1, []
+    above = bytearray(width * step)
+    for y in range(height):
+        kind, line = raw[y * stride], bytearray(raw[y * stride + 1:(y + 1) * stride])
+        for i in range(len(line)):
+            a = line[i - step] if i >= step else 0
+            b, c = above[i], above[i - step] if i >= step else 0
+            p = a + b - c
+            nearest = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+            line[i] = (line[i] + (0, a, b, (a + b) // 2, nearest)[kind]) & 255
+        rows.append([tuple(line[i:i + 3]) for i in range(0, len(line), step)])
+        above = line
+    return rows
+
+
 def write_exr(path, width, height, colour):
     """Three float channels without compression; colour(x, y) gives the three values, which may be NaN or infinite."""
     def attribute(name, kind, body):

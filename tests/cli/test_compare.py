@@ -1,5 +1,5 @@
 """compare: numbers of known images, maps, parts of images, and what is refused."""
-from lumiscope import SOURCE, CommandTest, exr_header, main, write_exr, write_png
+from lumiscope import SOURCE, CommandTest, exr_header, main, read_png, write_exr, write_png
 
 WIDTH, HEIGHT = 48, 40
 METRICS = ["rmse", "relmse", "mse", "mae", "psnr", "smape", "ssim", "ms_ssim", "flip", "hdr_flip", "cpbd"]
@@ -77,6 +77,56 @@ class Compare(CommandTest):
         self.assertEqual(set(exr_header(self.bytes("deep/maps/flip.exr"))["channels"]), {"Y"})
         self.good("compare", "pattern.png", "half.png", "--metrics", "mae", "--maps", "one")
         self.assertEqual(sorted(path.name for path in (self.folder / "one").iterdir()), ["mae.exr", "mae.png"])
+
+    def colours(self, name):
+        return {colour for row in read_png(self.bytes(name)) for colour in row}
+
+    def test_maps_of_a_metric_have_one_range(self):
+        dark, middle, bright = (0, 0, 4), (183, 55, 121), (252, 253, 191)  # magma at 0, 0.5 and 1
+
+        def near(name, expected):
+            for seen in self.colours(name):
+                self.assertTrue(all(abs(a - b) <= 6 for a, b in zip(seen, expected)), f"{name}: {seen} {expected}")
+        # Frame 0 is right, frame 1 wrong by 0.2, frame 2 by 0.4.
+        self.frames("a.%d.exr", {0: 0.5, 1: 0.7, 2: 0.9})
+        self.frames("r.%d.exr", {0: 0.5, 1: 0.5, 2: 0.5})
+        ids = "mae,rmse,ssim,flip,temporal"
+        report = self.good("compare", "a.%d.exr", "r.%d.exr", "--metrics", ids, "--maps", "maps", "--json").json
+        self.assertEqual(list(report["maps"]), ids.split(","))
+        self.assertEqual({m["low"] for m in report["maps"].values()}, {0})
+        self.assertAlmostEqual(report["maps"]["mae"]["high"], 0.4, places=6)
+        self.assertAlmostEqual(report["maps"]["rmse"]["high"], report["frames"][2]["metrics"]["rmse"], places=6)
+        self.assertEqual([report["maps"][m]["high"] for m in ("ssim", "flip")], [1, 1])
+        for frame, colour in enumerate((dark, middle, bright)):
+            near(f"maps/mae.000{frame}.png", colour)
+        near("maps/rmse.0002.png", bright)
+        near("maps/flip.0000.png", dark)
+        # FLIP is over all of [0, 1]: a small difference alone is not bright.
+        write_png(self.folder / "nearly.png", WIDTH, HEIGHT, lambda x, y: (245,) * 3)
+        alone = self.good("compare", "nearly.png", "white.png", "--metrics", "flip,mae", "--maps", "one", "--json").json
+        self.assertLess(alone["metrics"]["flip"], 0.3)
+        self.assertGreater(alone["metrics"]["flip"], 0.01)
+        for colour in self.colours("one/flip.png"):
+            self.assertLess(sum(colour), sum(middle))
+        near("one/mae.png", bright)
+        self.assertEqual(alone["maps"], {"flip": {"low": 0, "high": 1}, "mae": {"low": 0, "high": alone["maps"]["mae"]["high"]}})
+        self.assertAlmostEqual(alone["maps"]["mae"]["high"], alone["metrics"]["mae"], places=5)
+        equal = self.good("compare", "white.png", "white.png", "--metrics", "mae", "--maps", "same")
+        near("same/mae.png", dark)
+        self.assertIn("colours of the maps: mae 0 to 1", equal.out)
+        table = self.good("compare", "a.%d.exr", "r.%d.exr", "--metrics", "mae,ssim", "--maps", "maps").out
+        self.assertIn("colours of the maps: mae 0 to 0.4, ssim 0 to 1\n", table)
+
+    def test_lists_may_have_blanks(self):
+        report = self.good("compare", "half.png", "black.png", "--metrics", " rmse, mse ", "--crop", "0, 0, 24, 40", "--json").json
+        self.assertEqual(report["metrics"], self.metrics("half.png", "black.png", "--metrics", "rmse,mse", "--crop", "0,0,24,40"))
+        self.assertEqual(list(report["metrics"]), ["rmse", "mse"])
+        self.refused(2, ["--metrics"], "compare", "half.png", "half.png", "--metrics", "rmse,,mse")
+
+    def test_maps_go_into_a_folder(self):
+        line = self.refused(2, ["--maps", "half.png", "a folder"], "compare", "half.png", "black.png", "--maps", "half.png")
+        self.assertNotIn("filesystem", line)
+        self.refused(2, ["--maps"], "compare", "half.png", "black.png", "--maps", "half.png/below")
 
     def test_exposure_is_what_ldr_metrics_see(self):
         def ssim(*more):
