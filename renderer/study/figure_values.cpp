@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "frame/display.h"
 #include "image/exr.h"
 #include "measure/measure.h"
+#include "study/run_job.h"
 
 namespace lumi {
 namespace {
@@ -53,11 +55,20 @@ std::string titleOf(const Study& study, const StudyMethod& method) {
     return study.entries[method.entry].name + (values.empty() ? "" : " [" + values + "]");
 }
 
-/// The value over the picture and in each crop of one image; its map if asked for.
-void measureImage(const Metric& metric, ImagePair pair, const std::vector<CropBox>& boxes, FigureColumn& column, Image* map) {
+/// What the reference's own noise adds to the metric over the picture, where that can be taken off. It is known as a mean
+/// over the picture only, not of its parts.
+std::optional<double> floorOf(const StudyReferenceNote& note, const std::string& metric) {
+    if (!isSquaredError(metric)) return std::nullopt;
+    const auto found = note.floor.find(metric);
+    return found == note.floor.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// The value over the picture, less the reference's own error, and in each crop of one image; its map if asked for.
+void measureImage(const Metric& metric, ImagePair pair, const std::vector<CropBox>& boxes, std::optional<double> floor, FigureColumn& column,
+                  Image* map) {
     pair.prepare();
     Measurement whole = metric.measure(pair, map != nullptr);
-    column.whole.push_back(whole.value);
+    column.whole.push_back(floor ? withoutReferenceNoise(metric.id, whole.value, *floor) : whole.value);
     if (map) *map = std::move(whole.map);
     for (size_t i = 0; i < boxes.size(); ++i) {
         ImagePair part = pair;
@@ -117,8 +128,11 @@ FigureContent figureContent(const Study& study, const StudyPlan& plan, const Stu
     for (const size_t method : methodsOf(study, plan, figure)) {
         if (!rows.contains(method)) continue;
         const Image reference = readColour(rows[method].front()->reference);
+        std::optional<double> floor;
         for (const StudyReferenceNote& note : records.references)
-            if (rows[method].front()->reference.filename() == std::filesystem::path(note.file).filename()) colours.exposureEv = note.exposureEv;
+            if (rows[method].front()->reference.filename() == std::filesystem::path(note.file).filename())
+                colours.exposureEv = note.exposureEv, floor = floorOf(note, figure.metric);
+        if (isSquaredError(figure.metric)) content.ownError = floor ? FigureContent::OwnError::TakenOff : FigureContent::OwnError::Left;
         if (content.columns.empty()) {
             content.reference = shown(reference, "RGB", colours);
             for (const StudyFigure::Crop& crop : figure.crops) content.boxes.push_back(cropBox(crop, reference.extent()));
@@ -128,7 +142,7 @@ FigureContent figureContent(const Study& study, const StudyPlan& plan, const Stu
             const Image image = readColour(row->image);
             const bool first = row == rows[method].front();
             if (first) column.picture = shown(image, "RGB", colours), errors.emplace_back();
-            measureImage(metric, {image, reference, {}, colours.exposureEv, study.metricSettings}, content.boxes, column, first ? &errors.back() : nullptr);
+            measureImage(metric, {image, reference, {}, colours.exposureEv, study.metricSettings}, content.boxes, floor, column, first ? &errors.back() : nullptr);
         }
         content.columns.push_back(std::move(column));
     }

@@ -136,6 +136,8 @@ std::string captionOf(const Study& study, const StudyFigure& figure, const Figur
     std::string text = fmt::format("{}, frame {}, {} spp: the reference ({} spp) with its crops, and each crop above its map of {}.",
                                    content.scene, content.frame, content.spp, study.reference.spp, metric.title);
     text += fmt::format(" Numbers are {} within the crop, those in the head over the whole picture", metric.title);
+    if (content.ownError == FigureContent::OwnError::TakenOff) text += ", without the reference's own error, which stays in those of the crops";
+    if (content.ownError == FigureContent::OwnError::Left) text += ", all with the reference's own error in them";
     if (study.seeds.size() < 2) return text + "; one seed, so nothing is known of their noise.";
     return text + fmt::format(": means over {} seeds with the half-width of the {:g}% interval, pictures are those of seed {}. The best is bold "
                               "where the intervals tell it from all others.",

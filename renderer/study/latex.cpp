@@ -133,6 +133,14 @@ const StudyStageTime* stageTimeOf(const StudyTimes& times, const StudyStageEffec
     return nullptr;
 }
 
+/// Which stages' differences are of other samples.
+std::string exceptText(const Study& study, const StudyPlan& plan) {
+    std::string names;
+    for (const StudyMethod& method : plan.methods)
+        if (tracesApart(study, method)) names += (names.empty() ? "" : ", ") + escapedLatex(method.name);
+    return names.empty() ? "" : "; not so " + names + ", traced with samples of its own";
+}
+
 /// A row a stage, a column a metric's change without it, and the time's.
 Rows ablationRows(const Study& study, const StudyPlan& plan, const StudySummaries& all, const StudyTimes& times, size_t scene) {
     const std::vector<std::string> metrics = allMetrics(study);
@@ -140,8 +148,8 @@ Rows ablationRows(const Study& study, const StudyPlan& plan, const StudySummarie
     for (const std::string& metric : metrics) rows.columns += "r", rows.head += " & $\\Delta$ " + metricTitle(metric);
     const bool timed = scene != kAllScenes;
     if (timed) rows.columns += "r", rows.head += " & $\\Delta$ ms / frame";
-    rows.caption = fmt::format("{}: each stage switched off in turn, on {}. Differences to the whole method on the same samples. {} A difference is bold where it "
-                               "is told from none.", escapedLatex(study.title), sceneTitle(study, scene), seedsText(study));
+    rows.caption = fmt::format("{}: each stage switched off in turn, on {}. Differences to the whole method on the same samples{}. {} A difference is bold where "
+                               "it is told from none.", escapedLatex(study.title), sceneTitle(study, scene), exceptText(study, plan), seedsText(study));
     for (const StudyStageEffect& effect : all.stages) {
         if (effect.scene != scene || effect.metric != metrics.front()) continue;
         std::vector<std::string> cells{escapedLatex(plan.methods[effect.whole].name), escapedLatex(plan.methods[effect.without].stage), std::to_string(effect.spp)};

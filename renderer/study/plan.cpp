@@ -205,6 +205,15 @@ bool isDocumentId(const std::string& module, const std::string& id) {
     return std::none_of(declared.begin(), declared.end(), [&](const ParameterInfo& info) { return info.id == id; });
 }
 
+bool tracesApart(const Study& study, const StudyMethod& method) {
+    const StudyEntry& entry = study.entries[method.entry];
+    for (const StudyAblation& ablation : study.ablations)
+        for (const StudyAblation::Stage& stage : ablation.stages)
+            if (method.whole && ablation.entry == entry.name && stage.name == method.stage)
+                return std::any_of(stage.set.begin(), stage.set.end(), [&](const StudyValue& value) { return isDocumentId(entry.module, value.id); });
+    return false;
+}
+
 std::string fileNameOf(const std::string& name) {
     std::string text;
     for (const unsigned char c : name) text += std::isalnum(c) || c == '-' || c == '.' ? static_cast<char>(c) : '-';

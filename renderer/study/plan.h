@@ -48,6 +48,10 @@ std::vector<std::vector<StudyValue>> combinations(const std::vector<StudyAxis>& 
 /// Is the id one of the document's rather than of the module?
 bool isDocumentId(const std::string& module, const std::string& id);
 
+/// Does the method lack a stage whose values are the document's (`path.max-depth`, `camera.jitter`)? Then its frames are traced
+/// apart from those of the whole method, and the two do not share their samples.
+bool tracesApart(const Study& study, const StudyMethod& method);
+
 /// Letters, digits, - and . kept, everything else becomes -.
 std::string fileNameOf(const std::string& name);
 

@@ -70,7 +70,7 @@ Json studyData(const Study& study, const StudyPlan& plan) {
         for (const StudyValue& value : method.set) set.push_back(value.id + " = " + value.text);
         methods.push_back({{"name", method.name}, {"entry", study.entries[method.entry].name},
                            {"module", study.entries[method.entry].module}, {"set", std::move(set)},
-                           {"coordinates", method.coordinates}, {"stage", method.stage}});
+                           {"coordinates", method.coordinates}, {"stage", method.stage}, {"apart", tracesApart(study, method)}});
     }
     Json axes = Json::array();
     if (study.sweep)

@@ -18,7 +18,8 @@ namespace lumi {
 using nlohmann::json;
 namespace {
 
-/// Wall-clock times by stage, gathered frame by frame; the first frame builds the scene and counts in none but `build`.
+/// Wall-clock times by stage, gathered frame by frame, for their medians over all frames of the job. The first frame counts
+/// like every other, though its caches are cold.
 class JobTimes {
 public:
     void add(const FrameOutput& frame) {

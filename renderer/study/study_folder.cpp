@@ -30,7 +30,10 @@ bool isInOurFolders(const std::string& file) {
 /// The file of which an interrupted writeFileAtomically() left this part: `<file>.<process>.<number>.tmp`.
 std::string wholeOf(std::string part) {
     if (!part.ends_with(".tmp")) return "";
-    for (int i = 0; i < 3 && !part.empty(); ++i) part.resize(std::min(part.size(), part.rfind('.') == std::string::npos ? 0 : part.rfind('.')));
+    for (int i = 0; i < 3; ++i) {
+        const size_t dot = part.rfind('.');
+        part.resize(dot == std::string::npos ? 0 : dot);
+    }
     return part;
 }
 

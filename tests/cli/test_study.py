@@ -139,10 +139,12 @@ class Results(StudyTest):
         self.assertIn("\\toprule", tables["results-cornell.tex"])
         self.assertIn("Tiny \\textless{}study\\textgreater{}", tables["results-cornell.tex"])
         # Another choice of crops is drawn from what is there: nothing is rendered again, and what is not wanted any more goes.
+        (out / "tables" / "all.pdf").write_text("mine")
         changed = [{"name": "other", "metric": "mse", "crops": [{"box": [0, 0, 0.5, 0.5]}, {"box": [0.5, 0.5, 0.5, 0.5]}]}]
         result = self.study(self.write(figures=changed), "--out", "out")
         self.assertIn("0 jobs run, ", result.err)
         self.assertEqual(sorted(p.name for p in (out / "figures").iterdir()), ["other.png", "other.svg"])
+        self.assertEqual((out / "tables" / "all.pdf").read_text(), "mine", "nothing that the study did not write")
 
     def test_lag_is_measured_after_a_step_in_the_light(self):
         """A mean with weight 1/2 of the new frame has 90% after three frames: 1 - 0.5^(n + 1)."""

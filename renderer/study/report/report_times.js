@@ -24,7 +24,9 @@ function addBias() {
 /** A row a stage: every metric without it against the whole method, and the time. */
 function addAblations() {
   if (!results.ablations || !results.ablations.length) return;
-  const part = section("ablations", "What each stage is worth", "Each stage switched off in turn, against the whole method on the same samples: differences of the metrics and of a frame's time" +
+  const apart = study.methods.filter(m => m.apart).map(m => m.name);
+  const samples = apart.length ? ` on the same samples (but ${escapeText(apart.join(", "))}: traced with samples of its own)` : " on the same samples";
+  const part = section("ablations", "What each stage is worth", "Each stage switched off in turn, against the whole method" + samples + ": differences of the metrics and of a frame's time" +
     (seedCount > 1 ? ", with intervals over the seeds. Bold ones are told from none." : ". With one seed nothing is known of the noise."));
   for (const scene of scenes) for (const spp of sampleCounts) {
     const own = results.ablations.filter(a => a.scene === scene && a.spp === spp);

@@ -76,6 +76,30 @@ TEST(Figures, ValuesAreThoseOfTheCrops) {
     EXPECT_NEAR(content.columns[1].crops[0][2], 0.012 * 0.012, 1e-7) << "each seed has its own";
 }
 
+/// Over the whole picture the numbers are those of the tables: without what the reference's noise adds.
+TEST(Figures, WholePicturesLoseTheReferencesOwnError) {
+    Made made;
+    const auto farValues = [&](const char* metric) {
+        made.study.figures[0].metric = metric;
+        return figureContent(made.study, made.plan, made.records, made.study.figures[0]).columns[2];
+    };
+    const FigureColumn plain = farValues("mse");
+    made.records.references[0].floor["mse"] = 0.004;
+    const FigureColumn corrected = farValues("mse");
+    EXPECT_NEAR(corrected.whole[1], plain.whole[1] - 0.004, 1e-9);
+    EXPECT_EQ(corrected.crops[0][1], plain.crops[0][1]) << "how much of it is in a crop is not known";
+    const double rmse = farValues("rmse").whole[1];
+    made.records.references[0].floor["rmse"] = rmse / 2;
+    EXPECT_NEAR(farValues("rmse").whole[1], std::sqrt(0.75) * rmse, 1e-9);
+    MessageLog log;
+    made.study.figures[0].metric = "mse";
+    EXPECT_NE(drawFigures(made.study, made.plan, made.records, log).at(0).caption.find("without the reference's own error"), std::string::npos);
+    made.study.figures[0].metric = "relmse";
+    EXPECT_NE(drawFigures(made.study, made.plan, made.records, log).at(0).caption.find("all with the reference's own error"), std::string::npos);
+    made.study.figures[0].metric = "flip";
+    EXPECT_EQ(drawFigures(made.study, made.plan, made.records, log).at(0).caption.find("own error"), std::string::npos);
+}
+
 TEST(Figures, AStripIsDrawnAsSvgAndPng) {
     const Made made;
     MessageLog log;

@@ -135,6 +135,14 @@ TEST(Latex, AblationsTellWhatAStageIsWorth) {
     EXPECT_NE(text.find("$\\mathbf{+3.000} \\pm 0.000$"), std::string::npos) << text;
 }
 
+/// A stage that is switched off by a value of the document is another job, with samples of its own.
+TEST(Latex, AblationsSayWhichSamplesDiffer) {
+    EXPECT_NE(Sample().table("ablation-cornell").find("on the same samples. "), std::string::npos);
+    Sample sample;
+    sample.study.ablations[0].stages[0].set = {{"path.max-depth", "1", ""}};
+    EXPECT_NE(sample.table("ablation-cornell").find("on the same samples; not so best\\_of without the limit, traced"), std::string::npos);
+}
+
 TEST(Latex, EscapesWhatMeansSomething) {
     EXPECT_EQ(escapedLatex("a&b%c$d#e_f{g}h~i^j\\k<l>\nm"),
               "a\\&b\\%c\\$d\\#e\\_f\\{g\\}h\\textasciitilde{}i\\textasciicircum{}j\\textbackslash{}k\\textless{}l\\textgreater{} m");

@@ -203,8 +203,9 @@ TEST(StudyFile, EveryShippedStudyIsGoodAtEveryPreset) {
     EXPECT_GE(studies.size(), 2u);
     for (const StudyListing& listing : studies) {
         EXPECT_NE(listing.title, listing.name) << listing.path;
-        for (const std::string preset : {"quick", "paper"}) {
+        for (const std::string preset : {"quick", "paper", ""}) {
             const Study study = loadStudy(listing.path, preset);
+            EXPECT_GE(study.seeds.size(), 3u) << listing.path << " at " << preset << ": the jackknife needs three";
             for (const StudyScene& scene : study.scenes)
                 EXPECT_TRUE(scene.optional || !findStudyScene(study, scene).empty());
         }
