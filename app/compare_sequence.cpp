@@ -80,7 +80,7 @@ public:
         maps_.finish();
         if (maps_.wanted()) report_.maps = maps_.ranges(), report_.mapsText = maps_.text();
         if (motionMissing_)
-            report_.warnings.push_back("temporal_reprojected wants references with the layer motion (reference --buffers motion)");
+            report_.warnings.emplace_back("temporal_reprojected wants references with the layer motion (reference --buffers motion)");
         printSequence(report_, options_);
         return 0;
     }
