@@ -6,45 +6,10 @@
 #include <cmath>
 
 #include "math/colour.h"
+#include "scene/texture_taps.h"
 
 namespace lumi {
 namespace {
-
-/// The two texels that a bilinear lookup blends along one axis, and the weight of the second.
-struct Tap {
-    int first = 0, second = 0;
-    float weight = 0;
-};
-
-/// `coordinate` brought into [0, 1] as the wrap mode says.
-float wrapUnit(float coordinate, Wrap wrap) {
-    switch (wrap) {
-        case Wrap::Repeat: return coordinate - std::floor(coordinate);
-        case Wrap::MirroredRepeat: {
-            const float t = coordinate - 2 * std::floor(0.5f * coordinate);
-            return t > 1 ? 2 - t : t;
-        }
-        default: return std::clamp(coordinate, 0.0f, 1.0f);
-    }
-}
-
-int nearestTexel(float coordinate, int count, Wrap wrap) {
-    return std::min(static_cast<int>(wrapUnit(coordinate, wrap) * static_cast<float>(count)), count - 1);
-}
-
-[[gnu::always_inline]] inline Tap linearTap(float coordinate, int count, Wrap wrap) {
-    const float x = wrapUnit(coordinate, wrap) * static_cast<float>(count) - 0.5f;
-    const float floored = std::floor(x);
-    Tap tap{static_cast<int>(floored), static_cast<int>(floored) + 1, x - floored};
-    if (wrap == Wrap::Repeat) {
-        if (tap.first < 0) tap.first = count - 1;
-        if (tap.second >= count) tap.second = 0;
-    } else {
-        tap.first = std::max(tap.first, 0);
-        tap.second = std::min(tap.second, count - 1);
-    }
-    return tap;
-}
 
 [[gnu::always_inline]] inline size_t texelOffset(const TextureImage::Level& level, int x, int y) {
     return 4 * (static_cast<size_t>(y) * static_cast<size_t>(level.extent.width) + static_cast<size_t>(x));
@@ -76,8 +41,8 @@ Vec4 sampleLevel(const Texture& texture, const TextureImage::Level& level, Vec2 
     const auto [width, height] = level.extent;
     if (texture.filter == TextureFilter::Nearest)
         return texel(image, level, nearestTexel(uv.x, width, texture.wrapU), nearestTexel(uv.y, height, texture.wrapV));
-    const Tap x = linearTap(uv.x, width, texture.wrapU);
-    const Tap y = linearTap(uv.y, height, texture.wrapV);
+    const AxisTap x = linearTap(uv.x, width, texture.wrapU);
+    const AxisTap y = linearTap(uv.y, height, texture.wrapV);
     const auto blended = [&](const Vec4& a, const Vec4& b, const Vec4& c, const Vec4& d) {
         const Vec4 top = a * (1 - x.weight) + b * x.weight, bottom = c * (1 - x.weight) + d * x.weight;
         return top * (1 - y.weight) + bottom * y.weight;
@@ -94,13 +59,6 @@ Vec4 sampleLevel(const Texture& texture, const TextureImage::Level& level, Vec2 
         return Vec4(p[0], p[1], p[2], p[3]);
     };
     return blended(at(0), at(1), at(2), at(3));
-}
-
-/// Base-2 logarithm of a positive float, exact at powers of two and linear between them (at most 0.086 too small):
-/// continuous and monotonic, which is all that a choice of mip level needs.
-float coarseLog2(float x) {
-    const uint32_t bits = std::bit_cast<uint32_t>(x);
-    return static_cast<float>(static_cast<int>(bits >> 23) - 127) + static_cast<float>(bits & 0x7fffffu) * 0x1p-23f;
 }
 
 bool finite(Vec2 v) { return std::isfinite(v.x) && std::isfinite(v.y); }
@@ -226,7 +184,7 @@ void Texture::prefetch(Vec2 uv, float width) const {
     const TextureImage::Level& level = image->levels[static_cast<size_t>(levelOf(width) + 0.5f)];
     const auto [columns, rows] = level.extent;
     const int x = nearestTexel(uv.x, columns, wrapU);
-    const Tap y = linearTap(uv.y, rows, wrapV);
+    const AxisTap y = linearTap(uv.y, rows, wrapV);
     for (const int row : {y.first, y.second}) {
         const size_t start = texelOffset(level, x, row);
         if (level.floats.empty()) __builtin_prefetch(level.bytes.data() + start);
@@ -247,8 +205,8 @@ float Texture::sampleAlpha(Vec2 uv) const {
     const auto [columns, rows] = level.extent;
     if (filter == TextureFilter::Nearest)
         return alpha(nearestTexel(uv.x, columns, wrapU), nearestTexel(uv.y, rows, wrapV));
-    const Tap x = linearTap(uv.x, columns, wrapU);
-    const Tap y = linearTap(uv.y, rows, wrapV);
+    const AxisTap x = linearTap(uv.x, columns, wrapU);
+    const AxisTap y = linearTap(uv.y, rows, wrapV);
     const float top = alpha(x.first, y.first) * (1 - x.weight) + alpha(x.second, y.first) * x.weight;
     const float bottom = alpha(x.first, y.second) * (1 - x.weight) + alpha(x.second, y.second) * x.weight;
     return top * (1 - y.weight) + bottom * y.weight;

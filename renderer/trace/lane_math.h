@@ -1,7 +1,8 @@
 #pragma once
 #include <cmath>
 #include <cstdint>
-#include <cstring>
+
+#include "math/kernel_math.h"
 
 /// Arithmetic of one lane for kernels: branch-free, so that loops over lanes vectorise. Include only from kernel files:
 /// everything here has internal linkage, each instruction set compiles its own copy.
@@ -34,16 +35,6 @@ LUMI_LANE Lane3 choose(bool first, Lane3 a, Lane3 b) {
 LUMI_LANE float mostOf(Lane3 v) { return most(v.x, most(v.y, v.z)); }
 LUMI_LANE float brightness(Lane3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 LUMI_LANE Lane3 unit(Lane3 v) { return v * (1.0f / std::sqrt(dot(v, v))); }
-LUMI_LANE int32_t bitsOf(float value) {
-    int32_t bits;
-    std::memcpy(&bits, &value, sizeof bits);
-    return bits;
-}
-LUMI_LANE float floatOf(int32_t bits) {
-    float value;
-    std::memcpy(&value, &bits, sizeof value);
-    return value;
-}
 /// Not NaN and not infinite.
 LUMI_LANE bool finite(float x) { return std::fabs(x) <= 3.402823466e38f; }
 LUMI_LANE bool finite(Lane3 v) { return finite(v.x) & finite(v.y) & finite(v.z); }
@@ -86,7 +77,7 @@ LUMI_LANE Lane3 cosineHemisphere(float u, float v) {
 /// A start for rays that leave a surface to the side of `normal`, as offsetOrigin() [Waechter & Binder 2019].
 LUMI_LANE float offsetCoordinate(float position, float normal, float extra) {
     const int32_t steps = static_cast<int32_t>(256.0f * normal);
-    const float moved = floatOf(bitsOf(position) + (position < 0 ? -steps : steps));
+    const float moved = bitsToFloat(floatToBits(position) + (position < 0 ? -steps : steps));
     const float result = std::fabs(position) < 1.0f / 32 ? position + (1.0f / 65536) * normal : moved;
     return result + normal * extra;
 }

@@ -8,47 +8,10 @@
 #include <cstring>
 
 #include "math/colour.h"
+#include "scene/texture_taps.h"
 
 namespace lumi {
 namespace {
-
-/// Largest integer not above `x`, which is below 2^31 in size.
-int floorOf(float x) {
-    const int whole = static_cast<int>(x);
-    return whole - (x < static_cast<float>(whole) ? 1 : 0);
-}
-
-float wrapUnit(float coordinate, Wrap wrap) {
-    if (wrap == Wrap::Repeat) return coordinate - static_cast<float>(floorOf(coordinate));
-    if (wrap == Wrap::ClampToEdge) return std::clamp(coordinate, 0.0f, 1.0f);
-    const float t = coordinate - 2 * static_cast<float>(floorOf(0.5f * coordinate));
-    return t > 1 ? 2 - t : t;
-}
-
-struct AxisTap {
-    int first, second;
-    float weight;
-};
-
-AxisTap axisTap(float coordinate, int count, Wrap wrap) {
-    const float x = wrapUnit(coordinate, wrap) * static_cast<float>(count) - 0.5f;
-    const int whole = floorOf(x);
-    AxisTap tap{whole, whole + 1, x - static_cast<float>(whole)};
-    if (wrap == Wrap::Repeat) {
-        if (tap.first < 0) tap.first = count - 1;
-        if (tap.second >= count) tap.second = 0;
-    } else {
-        tap.first = std::max(tap.first, 0);
-        tap.second = std::min(tap.second, count - 1);
-    }
-    return tap;
-}
-
-/// As Texture's: exact at powers of two and linear between them.
-float coarseLog2(float x) {
-    const uint32_t bits = std::bit_cast<uint32_t>(x);
-    return static_cast<float>(static_cast<int>(bits >> 23) - 127) + static_cast<float>(bits & 0x7fffffu) * 0x1p-23f;
-}
 
 /// Mesh coordinates into the texture's; those that are no place in it become 0.
 Vec2 usable(const TextureView& view, float u, float v) {
@@ -59,7 +22,7 @@ Vec2 usable(const TextureView& view, float u, float v) {
 
 TexelTaps tapsIn(const TextureView& view, Vec2 uv, int level) {
     const TextureView::Level& in = view.levels[static_cast<size_t>(level)];
-    const AxisTap x = axisTap(uv.x, in.width, view.wrapU), y = axisTap(uv.y, in.height, view.wrapV);
+    const AxisTap x = linearTap(uv.x, in.width, view.wrapU), y = linearTap(uv.y, in.height, view.wrapV);
     const uint32_t top = static_cast<uint32_t>(y.first) * static_cast<uint32_t>(in.width);
     const uint32_t bottom = static_cast<uint32_t>(y.second) * static_cast<uint32_t>(in.width);
     const auto left = static_cast<uint32_t>(x.first), right = static_cast<uint32_t>(x.second);

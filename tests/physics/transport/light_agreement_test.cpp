@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "support/image_tests.h"
+#include "support/texel_picture.h"
 #include "support/transport_scene.h"
 
 namespace lumi {
@@ -16,20 +17,12 @@ const SignalSet kMoments{Signal::Noisy, Signal::SampleVariance};
 
 /// A picture of bright and dark squares in several colours.
 Texture picture() {
-    auto image = std::make_shared<TextureImage>();
-    TextureImage::Level level;
-    level.extent = {8, 4};
+    std::vector<Vec3> squares;
     for (int i = 0; i < 32; ++i) {
         const float value = i % 3 == 0 ? 1.5f : 0.4f;
-        for (const float channel : {value, 0.5f * value, i % 2 ? value : 0.0f, 1.0f}) level.floats.push_back(channel);
+        squares.emplace_back(value, 0.5f * value, i % 2 ? value : 0.0f);
     }
-    image->levels.push_back(level);
-    buildMips(*image);
-    Texture texture;
-    texture.image = image;
-    texture.wrapU = texture.wrapV = Wrap::ClampToEdge;
-    texture.filter = TextureFilter::Nearest;
-    return texture;
+    return texelPicture({8, 4}, squares);
 }
 
 struct Emitter {

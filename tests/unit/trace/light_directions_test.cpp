@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "math/hash.h"
+#include "support/texel_picture.h"
 #include "support/transport_scene.h"
 #include "trace/surface.h"
 #include "trace/trace_scene.h"
@@ -17,18 +18,9 @@ Vec2 numbers(uint32_t sequence, uint32_t i) {
 
 /// Bright, dark and black squares.
 Texture picture() {
-    auto image = std::make_shared<TextureImage>();
-    TextureImage::Level level;
-    level.extent = {4, 2};
-    for (const float value : {1.0f, 0.3f, 0.0f, 2.0f, 0.5f, 1.5f, 0.2f, 1.0f})
-        for (const float channel : {value, value, value, 1.0f}) level.floats.push_back(channel);
-    image->levels.push_back(level);
-    buildMips(*image);
-    Texture texture;
-    texture.image = image;
-    texture.wrapU = texture.wrapV = Wrap::ClampToEdge;
-    texture.filter = TextureFilter::Nearest;
-    return texture;
+    std::vector<Vec3> squares;
+    for (const float value : {1.0f, 0.3f, 0.0f, 2.0f, 0.5f, 1.5f, 0.2f, 1.0f}) squares.emplace_back(value);
+    return texelPicture({4, 2}, squares);
 }
 
 void addFlat(TinyScene& tiny, LightType type, bool textured, float slant = 0) {

@@ -183,7 +183,10 @@ TEST(TextureView, LooksUpWhatTheTextureHolds) {
                 ASSERT_NEAR(a[c] + (b[c] - a[c]) * fraction, texture.sample(uv, width)[c], 2e-4f);
             }
         }
-        EXPECT_TRUE(isFinite(Vec3(blend(view, findTaps(view, NAN, kInfinity, 0.1f)))));
+        for (const Vec2 far : {Vec2(NAN, kInfinity), Vec2(1e12f, -1e12f), Vec2(3e38f, 16777217.0f)}) {
+            EXPECT_TRUE(isFinite(Vec3(blend(view, findTaps(view, far.x, far.y, 0.1f)))));
+            EXPECT_TRUE(isFinite(Vec3(texture.sample(far, 0.1f))));
+        }
     }
 }
 
