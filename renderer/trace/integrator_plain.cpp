@@ -210,6 +210,7 @@ void Integrator::pendPlainLights(PathBatch& batch, int depth) const {
             PathVertex& vertex = batch.vertices[lanes.row[i]];
             vertex.lightSampled = true;
             vertex.lightPosition = light.position;
+            vertex.lightInfinite = !std::isfinite(light.distance);
             vertex.light = light.light;
         }
         batch.pending.push_back({index, lanes.lightContribution.get<Vec3>(i), lanes.lightDiffuse.get<Vec3>(i),

@@ -24,7 +24,6 @@ public:
     Vec2 get2(uint32_t dimension) const;
 
     /// What names the numbers of a Sobol stream; see SamplerKernels.
-    bool isSobol() const { return kind_ == SamplerKind::Sobol; }
     uint32_t scramble() const { return scramble_; }
     uint32_t index() const { return index_; }
 
