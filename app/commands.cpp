@@ -19,10 +19,10 @@ namespace {
 /// Says which --set has no effect because the method that it belongs to does not run.
 void warnOfIdle(const Document& document, const SceneOptions& options, MessageLog& log) {
     const std::vector<std::string> running = document.activeInstances();
+    const auto catalog = moduleCatalog();
     for (const TypedValue& value : options.values) {
         const std::string instance = value.id.substr(0, value.id.find('.'));
         const std::string module = instance.substr(0, instance.find('@'));
-        const auto catalog = moduleCatalog();
         const bool isModule = std::any_of(catalog.begin(), catalog.end(), [&](const ModuleEntry& e) { return module == e.id; });
         if (!isModule || std::find(running.begin(), running.end(), instance) != running.end()) continue;
         log.warning(fmt::format("{} {}={}: no effect, {} does not run; {} does", value.option, value.id, value.text, instance,

@@ -108,7 +108,11 @@ FlipExposures parseFlipExposures(const std::string& text, const std::string& opt
     if (parts.size() != 2 && parts.size() != 3) typed.refuse();
     FlipExposures range = FlipExposures::over(typed.number(parts[0], 100), typed.number(parts[1], 100));
     if (range.stop < range.start) typed.refuse();
-    if (parts.size() == 3) range.count = static_cast<int>(std::min<int64_t>(typed.whole(parts[2], 1), 1000));
+    if (parts.size() == 3) {
+        const int64_t count = typed.whole(parts[2], 1);
+        if (count > 64) typed.refuse("too many exposures", "at most 64");
+        range.count = static_cast<int>(count);
+    }
     return range;
 }
 

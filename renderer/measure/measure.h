@@ -19,8 +19,8 @@ struct FlipExposures {
     bool operator==(const FlipExposures&) const = default;
 };
 
-/// What metrics can be told beside the images; each is printed with its number (Measurement::details). Command line,
-/// study files and the window fill the same fields.
+/// What metrics can be told beside the images; each is printed with its number (Measurement::details). Command line
+/// and study files fill the same fields.
 struct MetricSettings {
     double relMseEpsilon = 0.001;                  ///< added to the squared gray reference; above 0
     /// Of HDR-FLIP; without them it takes flipExposures(reference). All tests of one reference want the same.

@@ -153,10 +153,12 @@ Rows ablationRows(const Study& study, const StudyPlan& plan, const StudySummarie
     for (const StudyStageEffect& effect : all.stages) {
         if (effect.scene != scene || effect.metric != metrics.front()) continue;
         std::vector<std::string> cells{escapedLatex(plan.methods[effect.whole].name), escapedLatex(plan.methods[effect.without].stage), std::to_string(effect.spp)};
-        for (const std::string& metric : metrics)
-            for (const StudyStageEffect& own : all.stages)
-                if (own.scene == scene && own.without == effect.without && own.spp == effect.spp && own.metric == metric)
-                    cells.push_back(differenceCell(own.difference));
+        for (const std::string& metric : metrics) {
+            const auto own = std::find_if(all.stages.begin(), all.stages.end(), [&](const StudyStageEffect& stage) {
+                return stage.scene == scene && stage.without == effect.without && stage.spp == effect.spp && stage.metric == metric;
+            });
+            cells.push_back(own == all.stages.end() ? "--" : differenceCell(own->difference));
+        }
         const StudyStageTime* time = timed ? stageTimeOf(times, effect) : nullptr;
         if (timed) cells.push_back(time ? differenceCell(time->differenceMs) : "--");
         rows.lines.push_back(joinedCells(cells));

@@ -26,8 +26,6 @@ public:
     double fraction();
     /// Seconds left; below 0 while nothing is known.
     double leftS(double nowS) const;
-    /// Samples a pixel that the references of a job take, if none is in the cache.
-    double referenceWork(size_t job) const { return jobs_[job].references; }
 
 private:
     struct Job {

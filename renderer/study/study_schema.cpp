@@ -134,7 +134,9 @@ Json bodySchema() {
                                {"set", reference("values")}},
                               "What images are compared with.");
     all["metrics"] = listOf(oneOfNames(metricIds(true), "As `lumiscope list metrics` names them."), "What is measured.");
-    Json exposures = listOf({{"type", "number"}, {"minimum", -100}, {"maximum", 100}}, "Start and stop in EV, and how many; by default what the reference says.", 2);
+    const Json stops = {{"type", "number"}, {"minimum", -100}, {"maximum", 100}};
+    Json exposures = listOf(stops, "Start and stop in EV, and how many; by default what the reference says.", 2);
+    exposures["prefixItems"] = {stops, stops, whole(2, 64, "How many exposures.")};
     exposures["maxItems"] = 3;
     all["metric-settings"] = closed({{"relmse-epsilon", {{"type", "number"}, {"minimum", 1e-12}, {"maximum", 1e6}, {"default", 0.001}}},
                                      {"hdr-flip-exposures", std::move(exposures)}},
