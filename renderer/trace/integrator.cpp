@@ -55,7 +55,8 @@ void Integrator::add(PathBatch& batch, PathState& path, const Vec3& contribution
 }
 
 bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::span<const SurfacePoint> firstPoints,
-                     std::span<Vec3> radiance, bool coherent, TraceCounts& counts, const std::stop_token& stop) const {
+                     std::span<Vec3> radiance, bool coherent, TraceCounts& counts, const std::stop_token& stop,
+                     std::span<const Hit> firstHits) const {
     assert(starts.size() <= PathBatch::kMost);
     const auto count = static_cast<uint32_t>(starts.size());
     batch.paths.resize(count);
@@ -76,10 +77,9 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
     for (int depth = 0; !batch.active.empty(); ++depth) {
         if (stop.stop_requested()) return false;
         const bool given = depth == 0 && !firstPoints.empty();
-        if (!given)
-            findHits(batch, depth, coherent, counts);
-        else
-            batch.hits.assign(count, RawHit());
+        if (given) batch.hits.assign(count, RawHit());
+        else if (depth == 0 && !firstHits.empty()) takeHits(batch, firstHits);
+        else findHits(batch, depth, coherent, counts);
         const bool wantsVertices = depth < needs_.vertexDepths;
         if (wantsVertices) batch.vertices.assign(batch.active.size(), PathVertex()), batch.vertexOf.resize(count);
         if (!given) arrive(batch, depth);
@@ -107,6 +107,14 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
         for (PathObserver* observer : observers_) observer->finished(batch.slots, batch.samples, batch.radiance);
     }
     return true;
+}
+
+void Integrator::takeHits(PathBatch& batch, std::span<const Hit> hits) {
+    batch.hits.resize(hits.size());
+    for (size_t i = 0; i < hits.size(); ++i) {
+        const SurfacePoint& point = hits[i].point;
+        batch.hits[i] = {hits[i].distance, point.instance, point.primitive, point.barycentrics.x, point.barycentrics.y};
+    }
 }
 
 void Integrator::findHits(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const {

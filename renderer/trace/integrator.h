@@ -26,11 +26,13 @@ public:
 
     /// Traces up to PathBatch::kMost paths. With `firstPoints` the first vertices are given: start i sees
     /// firstPoints[i] from along its ray's direction. `radiance` may be empty; `coherent` says that neighbouring starts
-    /// look alike. Returns false if stopped between bounces.
+    /// look alike. With `firstHits` it is known what the starts' rays meet. Returns false if stopped between bounces.
     bool run(PathBatch& batch, std::span<const PathStart> starts, std::span<const SurfacePoint> firstPoints,
-             std::span<Vec3> radiance, bool coherent, TraceCounts& counts, const std::stop_token& stop = {}) const;
+             std::span<Vec3> radiance, bool coherent, TraceCounts& counts, const std::stop_token& stop = {},
+             std::span<const Hit> firstHits = {}) const;
 
 private:
+    static void takeHits(PathBatch& batch, std::span<const Hit> hits);
     void findHits(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const;
     void arrive(PathBatch& batch, int depth) const;
     bool isDark(const InstanceRecord& instance, uint32_t primitive, int depth) const;

@@ -93,7 +93,8 @@ struct Tracer::Impl {
     }
     bool traceBatches(std::span<const PathStart> starts, std::span<const SurfacePoint> firstPoints,
                       const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
-                      std::span<PathObserver* const> observers, const std::stop_token& stop);
+                      std::span<PathObserver* const> observers, const std::stop_token& stop,
+                      std::span<const Hit> firstHits = {});
 };
 
 Tracer::Tracer() : impl_(std::make_unique<Impl>()) {}
@@ -198,7 +199,8 @@ bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_t
 
 bool Tracer::Impl::traceBatches(std::span<const PathStart> starts, std::span<const SurfacePoint> firstPoints,
                                 const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
-                                std::span<PathObserver* const> observers, const std::stop_token& stop) {
+                                std::span<PathObserver* const> observers, const std::stop_token& stop,
+                                std::span<const Hit> firstHits) {
     const Integrator integrator(scene, settings, seed, observers);
     const auto count = static_cast<int64_t>(starts.size());
     std::atomic<int64_t> done{0};
@@ -221,7 +223,8 @@ bool Tracer::Impl::traceBatches(std::span<const PathStart> starts, std::span<con
                 const bool whole = integrator.run(*batch, starts.subspan(first, size),
                                                   firstPoints.empty() ? firstPoints : firstPoints.subspan(first, size),
                                                   radiance.empty() ? radiance : radiance.subspan(first, size),
-                                                  firstPoints.empty(), counts, stop);
+                                                  firstPoints.empty(), counts, stop,
+                                                  firstHits.empty() ? firstHits : firstHits.subspan(first, size));
                 if (!whole) break;
                 done += static_cast<int64_t>(size);
                 i += static_cast<int64_t>(size);
@@ -237,6 +240,13 @@ bool Tracer::tracePaths(std::span<const PathStart> starts, const PathSettings& s
                         std::span<Vec3> radiance, std::span<PathObserver* const> observers, std::stop_token stop) {
     assert(radiance.empty() || radiance.size() == starts.size());
     return impl_->traceBatches(starts, {}, settings, seed, radiance, observers, stop);
+}
+
+bool Tracer::continuePaths(std::span<const PathStart> starts, std::span<const Hit> hits, const PathSettings& settings,
+                           uint32_t seed, std::span<Vec3> radiance, std::span<PathObserver* const> observers,
+                           std::stop_token stop) {
+    assert(hits.size() == starts.size() && (radiance.empty() || radiance.size() == starts.size()));
+    return impl_->traceBatches(starts, {}, settings, seed, radiance, observers, stop, hits);
 }
 
 bool Tracer::shade(std::span<const SurfacePoint> points, std::span<const Vec3> wo, std::span<const RandomKey> keys,
@@ -269,7 +279,7 @@ void toBatchRays(std::span<const Ray> rays, std::vector<BatchRay>& out, size_t f
 
 }  // namespace
 
-void Tracer::closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::stop_token stop) {
+void Tracer::closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::stop_token stop, bool coherent) {
     assert(rays.size() == hits.size());
     parallelRanges(
         static_cast<int64_t>(rays.size()), kRayBlock,
@@ -278,14 +288,14 @@ void Tracer::closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::st
             std::vector<BatchRay> batch;
             std::vector<RawHit> raw(count);
             toBatchRays(rays.subspan(first, count), batch, first);
-            intersectRays(impl_->scene.embree, batch, raw, Coherence::Incoherent);
+            intersectRays(impl_->scene.embree, batch, raw, coherent ? Coherence::Coherent : Coherence::Incoherent);
             for (size_t i = 0; i < count; ++i) {
                 hits[first + i] = Hit();
                 if (!raw[i].valid()) continue;
                 const Vec3 position = batch[i].origin + batch[i].direction * raw[i].distance;
                 hits[first + i] = {surfacePoint(impl_->scene.tables, raw[i], position, batch[i].time), raw[i].distance};
             }
-            impl_->add({.bounceRays = count});
+            impl_->add(coherent ? TraceCounts{.cameraRays = count} : TraceCounts{.bounceRays = count});
         },
         stop);
 }

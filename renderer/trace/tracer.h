@@ -83,7 +83,15 @@ public:
                const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
                std::span<PathObserver* const> observers, std::stop_token stop = {}, std::span<const RayCone> cones = {});
 
-    void closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::stop_token stop = {});
+    /// tracePaths() from where closestHits() found that the rays of `starts` end: hits[i] is that of starts[i].ray, an
+    /// invalid one left the scene. The result is tracePaths()'s.
+    bool continuePaths(std::span<const PathStart> starts, std::span<const Hit> hits, const PathSettings& settings,
+                       uint32_t seed, std::span<Vec3> radiance, std::span<PathObserver* const> observers,
+                       std::stop_token stop = {});
+
+    /// Nearest hits. `coherent`: neighbours among the rays start alike and go alike, as camera rays do; it is faster then,
+    /// and they count as camera rays.
+    void closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::stop_token stop = {}, bool coherent = false);
     /// blocked[i] = 1 if anything lies in (tmin, tmax). With `blockers` (may be empty) the nearest blocker is reported.
     void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked, std::span<SurfacePoint> blockers = {},
                   std::stop_token stop = {});
