@@ -49,6 +49,8 @@ void TexturePlacement::describe(ParameterVisitor& v) {
                             .help = "What lies outside of 0 to 1.", .redo = Redo::Samples});
     v.choice("filter", filter, {.label = "Filter", .options = {"nearest", "linear"},
                                 .help = "How texels are interpolated.", .redo = Redo::Samples});
+    v.toggle("mipmaps", mipmaps, {.label = "Mip maps", .help = "Average texels that a pixel's footprint covers; without, every "
+                                  "lookup is at full resolution and fine detail aliases.", .redo = Redo::Samples});
 }
 
 namespace {
@@ -64,6 +66,7 @@ struct TextureRequest {
     bool srgb;
     int material;                     ///< index into scene.materials
     const TextureKey* key;
+    bool mipmaps = true;
     Texture placement;                ///< the image comes with loadTextures()
     size_t image = 0;                 ///< index into the distinct images
 };
@@ -81,7 +84,7 @@ Texture placedTexture(const TexturePlacement& placement) {
 
 /// `"wood.png"`, or `{"file": "wood.png", "scale": [2, 2]}`, or `{"checker": {"squares": 8}, "scale": [2, 2]}`.
 TextureRequest readRequest(SceneFileContext& context, const JsonValue& value, const TextureKey& key, int material) {
-    TextureRequest request{&value, {}, nullptr, {}, key.srgb, material, &key, {}};
+    TextureRequest request{&value, {}, nullptr, {}, key.srgb, material, &key, true, {}};
     if (value.isString()) {
         request.file = readText(context.tree, value, key.key);
         return request;
@@ -113,27 +116,27 @@ TextureRequest readRequest(SceneFileContext& context, const JsonValue& value, co
     reader.finish();
     if (!request.generator && request.file.empty())
         reader.fail(value.at, fmt::format("\"{}\" names no image", key.key), "\"file\" or a generator");
+    request.mipmaps = placement.mipmaps;
     request.placement = placedTexture(placement);
     return request;
 }
 
-ImagePtr decodeFile(const std::vector<uint8_t>& bytes, const std::string& name, bool srgb) {
+std::shared_ptr<TextureImage> decodeFile(const std::vector<uint8_t>& bytes, const std::string& name, bool srgb) {
     Image8 decoded = decodeImage8(bytes, name);
     auto image = std::make_shared<TextureImage>();
     image->name = name;
     image->srgb = srgb;
     image->levels.push_back({decoded.extent, std::move(decoded.rgba), {}});
-    buildMips(*image);
     return image;
 }
 
 /// Loads or generates each distinct image once; a file used both as colour and as data counts twice.
 void loadTextures(SceneFileContext& context, std::vector<TextureRequest>& requests) {
-    std::map<std::tuple<std::string, std::string, bool>, size_t> known;
+    std::map<std::tuple<std::string, std::string, bool, bool>, size_t> known;
     std::vector<const TextureRequest*> distinct;
     for (TextureRequest& request : requests) {
         const bool srgb = request.generator ? false : request.srgb;
-        const auto [place, isNew] = known.emplace(std::tuple(request.file, request.generated, srgb), distinct.size());
+        const auto [place, isNew] = known.emplace(std::tuple(request.file, request.generated, srgb, request.mipmaps), distinct.size());
         request.image = place->second;
         if (isNew) distinct.push_back(&request);
     }
@@ -145,16 +148,17 @@ void loadTextures(SceneFileContext& context, std::vector<TextureRequest>& reques
         const auto i = static_cast<size_t>(index);
         const TextureRequest& request = *distinct[i];
         try {
+            std::shared_ptr<TextureImage> image;
             if (request.generator) {
-                auto image = std::make_shared<TextureImage>(request.generator->build());
-                buildMips(*image);
-                images[i] = std::move(image);
-                return;
+                image = std::make_shared<TextureImage>(request.generator->build());
+            } else {
+                const std::filesystem::path path = context.resolve(request.file);
+                const std::vector<uint8_t> bytes = readFile(path);
+                digests[i] = digest(bytes);
+                image = decodeFile(bytes, path.string(), request.srgb);
             }
-            const std::filesystem::path path = context.resolve(request.file);
-            const std::vector<uint8_t> bytes = readFile(path);
-            digests[i] = digest(bytes);
-            images[i] = decodeFile(bytes, path.string(), request.srgb);
+            if (request.mipmaps) buildMips(*image);
+            images[i] = std::move(image);
         } catch (const Error& error) {
             errors[i] = error;
         }

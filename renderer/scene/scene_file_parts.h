@@ -85,6 +85,7 @@ struct TexturePlacement {
     int uvSet = 0;
     Wrap wrap = Wrap::Repeat;
     TextureFilter filter = TextureFilter::Linear;
+    bool mipmaps = true;
     void describe(ParameterVisitor& v);
 };
 

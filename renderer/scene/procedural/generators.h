@@ -34,6 +34,7 @@ std::unique_ptr<Procedural> makeFruit();          ///< fruit.cpp
 std::unique_ptr<Procedural> makeGrapes();         ///< fruit.cpp
 
 std::unique_ptr<Procedural> makeCreature();     ///< creature.cpp: a skinned walker
+std::unique_ptr<Procedural> makeOgre();         ///< ogre.cpp: a skinned, breathing, round figure
 std::unique_ptr<Procedural> makeBlob();         ///< blob.cpp: a morphing body
 std::unique_ptr<Procedural> makeGear();         ///< toys.cpp
 std::unique_ptr<Procedural> makeSpinningTop();  ///< toys.cpp

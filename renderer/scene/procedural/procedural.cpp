@@ -42,6 +42,7 @@ constexpr std::array kProcedurals{
     ProceduralEntry{"fruit", "An apple, a pear, a lemon or an orange.", makeFruit},
     ProceduralEntry{"grapes", "A bunch of grapes, its berries instanced.", makeGrapes},
     ProceduralEntry{"creature", "A long-necked walker: skinned, with a looping gait.", makeCreature},
+    ProceduralEntry{"ogre", "A stout round figure with tusks and horns: skinned, breathing, looking about.", makeOgre},
     ProceduralEntry{"blob", "A ball that morphs between lobed forms.", makeBlob},
     ProceduralEntry{"gear", "A toothed wheel about Z.", makeGear},
     ProceduralEntry{"spinning-top", "A turned top in painted bands, on its tip.", makeSpinningTop},
@@ -56,6 +57,7 @@ constexpr std::array kTextures{
     ProceduralTextureEntry{"weave", "Woven cloth.", makeWeave},
     ProceduralTextureEntry{"carpet", "A knotted rug, drawn once over 0 to 1.", makeCarpet},
     ProceduralTextureEntry{"painting", "A picture for a frame or a label, drawn once over 0 to 1.", makePainting},
+    ProceduralTextureEntry{"print", "A sheet of fine print and line art, drawn once over 0 to 1.", makePrint},
 };
 
 }  // namespace

@@ -64,5 +64,6 @@ std::unique_ptr<ProceduralTexture> makePlaster();   ///< texture_stone.cpp
 std::unique_ptr<ProceduralTexture> makeWeave();     ///< texture_cloth.cpp
 std::unique_ptr<ProceduralTexture> makeCarpet();    ///< texture_cloth.cpp: a knotted rug, drawn once over 0 to 1
 std::unique_ptr<ProceduralTexture> makePainting();  ///< texture_painting.cpp
+std::unique_ptr<ProceduralTexture> makePrint();     ///< texture_print.cpp: fine print and line art, drawn once over 0 to 1
 
 }  // namespace lumi

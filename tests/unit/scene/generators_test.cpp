@@ -232,7 +232,11 @@ TEST(BuiltInScenes, LoadWithoutAWarningAndWithinTheirSize) {
                                                                       {"classroom", {50000, 450000}},
                                                                       {"courtyard", {1000000, 2500000}},
                                                                       {"pillar", {10000, 100000}},
-                                                                      {"grids", {1000, 100000}}};
+                                                                      {"grids", {1000, 100000}},
+                                                                      {"hairball", {500000, 1500000}},
+                                                                      {"text-plane", {100, 10000}},
+                                                                      {"ogre", {50000, 300000}},
+                                                                      {"bump-plane", {2, 100}}};
     for (const auto& [name, range] : sizes) {
         SCOPED_TRACE(name);
         MessageLog log;
@@ -247,6 +251,55 @@ TEST(BuiltInScenes, LoadWithoutAWarningAndWithinTheirSize) {
         EXPECT_EQ(scene->render.size, (Extent2{1280, 720}));
         EXPECT_EQ(scene->isAnimated(), name != "cornell" && name != "still-life" && name != "pillar" && name != "grids");
     }
+}
+
+TEST(Generators, TheOgreIsClosedAndBreathes) {
+    const ProceduralResult result = built("ogre");
+    const Mesh& mesh = *result.parts.at(0).mesh;
+    // Where two folds meet four triangles may share an edge; closed it is all the same: its faces' areas cancel.
+    EXPECT_LE(openEdges(mesh), 4u);
+    glm::dvec3 sum(0);
+    for (const UVec3& t : mesh.triangles)
+        sum += glm::dvec3(glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]));
+    EXPECT_LT(glm::length(sum), 1e-4);
+    EXPECT_GT(volumeOf(mesh), 0.2);
+    ASSERT_EQ(mesh.morphTargets.size(), 1u);
+    float most = 0;
+    for (const Vec3& moved : mesh.morphTargets[0].positions) most = std::max(most, glm::length(moved));
+    EXPECT_GT(most, 0.02f);
+    EXPECT_LT(most, 0.08f);
+    EXPECT_EQ(mesh.skin.first.size(), mesh.positions.size() + 1);
+    size_t turned = 0;
+    for (const UVec3& t : mesh.triangles) {
+        const Vec3 face = glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
+        turned += glm::dot(face, mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z]) < 0;
+    }
+    EXPECT_LE(turned * 500, mesh.triangles.size()) << "normals and faces agree";
+}
+
+TEST(Generators, PrintIsMostlyPaperAndSharp) {
+    const auto print = makeProceduralTexture("print");
+    const Describe describe = [&](ParameterVisitor& v) { print->describe(v); };
+    setParameter(describe, "texels", 1024);
+    const TextureImage sheet = print->build();
+    ASSERT_EQ(sheet.levels[0].extent, (Extent2{1024, 1024}));
+    size_t dark = 0, red = 0, edges = 0;
+    const std::vector<uint8_t>& bytes = sheet.levels[0].bytes;
+    for (size_t i = 0; i + 4 < bytes.size(); i += 4) {
+        dark += bytes[i] < 80;
+        red += bytes[i] > 150 && bytes[i + 1] < 90;
+        edges += std::abs(int(bytes[i + 1]) - int(bytes[i + 5])) > 100;
+    }
+    const double area = 1024.0 * 1024.0;
+    EXPECT_GT(dark / area, 0.004);
+    EXPECT_LT(dark / area, 0.3);
+    EXPECT_GT(red / area, 0.003);
+    EXPECT_GT(edges / area, 0.01);
+    setParameter(describe, "weight", 3.0f);
+    size_t heavy = 0;
+    const TextureImage bold = print->build();
+    for (size_t i = 0; i < bold.levels[0].bytes.size(); i += 4) heavy += bold.levels[0].bytes[i] < 80;
+    EXPECT_GT(heavy, 2 * dark);
 }
 
 TEST(BuiltInScenes, TheParadeComesBackToItsStart) {

@@ -203,6 +203,17 @@ TEST(SceneFile, TexturesFromGenerators) {
     EXPECT_EQ(texture.image->levels[0].bytes[0], 255);
 }
 
+TEST(SceneFile, TexturesWithoutMipMapsKeepTheirDetail) {
+    const Scene scene = parseScene(R"({"version": 1, "materials": {
+      "sharp": {"base-color-texture": {"checker": {"squares": 8, "first": 1, "second": 0}, "mipmaps": false}},
+      "soft": {"base-color-texture": {"checker": {"squares": 8, "first": 1, "second": 0}}}}})");
+    const Texture &sharp = scene.materials[0].baseColorTexture, &soft = scene.materials[1].baseColorTexture;
+    EXPECT_EQ(sharp.image->levels.size(), 1u);
+    const Vec2 white(1.0f / 32);
+    EXPECT_NEAR(sharp.sample(white, 1).x, 1, 1e-3f);
+    EXPECT_NEAR(soft.sample(white, 1).x, 0.5f, 0.02f);
+}
+
 TEST(SceneFile, EqualGeneratedTexturesAreMadeOnce) {
     const Scene scene = parseScene(R"({"version": 1, "materials": {
       "a": {"base-color-texture": {"checker": {"squares": 2}, "scale": 2}}, "b": {"base-color-texture": {"checker": {"squares": 2}}},

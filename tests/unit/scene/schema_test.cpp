@@ -26,7 +26,7 @@ constexpr const char* kEverything = R"({
   "materials": {
     "plain": {"base-color": 0.5, "roughness": 1},
     "tiles": {"base-color-texture": {"checker": {"squares": 2}, "scale": 2, "offset": [0, 1], "rotate-deg": 45,
-              "wrap": "mirror", "filter": "linear", "uv-set": 0}, "emission": [1, 1, 1], "alpha-mode": "opaque"}},
+              "wrap": "mirror", "filter": "linear", "uv-set": 0, "mipmaps": false}, "emission": [1, 1, 1], "alpha-mode": "opaque"}},
   "instances": [
     {"name": "a", "asset": "ball", "material": "plain", "translate": [0, 1, 0], "rotate-deg": [0, 45, 0], "scale": 1,
      "interpolation": "linear", "loop": false,
