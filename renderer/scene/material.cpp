@@ -35,7 +35,7 @@ void Material::describe(ParameterVisitor& v) {
     describeTransmission(v);
     describeLayers(v);
     v.toggle("double-sided", doubleSided,
-             {.label = "Double-sided", .help = "Both faces emit; shading is two-sided in any case.", .redo = Redo::Samples});
+             {.label = "Double-sided", .help = "Both faces emit, and the camera sees both.", .redo = Redo::Samples});
 }
 
 void Material::describeTransmission(ParameterVisitor& v) {

@@ -29,7 +29,9 @@ struct Material {
 
     AlphaMode alphaMode = AlphaMode::Opaque;
     float alphaCutoff = 0.5f;
-    bool doubleSided = true;  ///< only decides whether both faces emit; shading is always two-sided
+    /// If not, only the front faces emit, and the camera does not see the back faces of what does not transmit. All other
+    /// rays meet both, and shading is always two-sided.
+    bool doubleSided = true;
 
     float ior = 1.5f;
     float specular = 1;  ///< KHR_materials_specular: weight of the dielectric reflection

@@ -19,7 +19,8 @@ uint64_t bareHits(RTCScene scene, RTCIntersectContext& context, const BatchRay& 
     query.ray.org_x = r.origin.x, query.ray.org_y = r.origin.y, query.ray.org_z = r.origin.z;
     query.ray.dir_x = r.direction.x, query.ray.dir_y = r.direction.y, query.ray.dir_z = r.direction.z;
     query.ray.tnear = r.tmin, query.ray.tfar = r.tmax, query.ray.time = r.time;
-    query.ray.mask = ~0u, query.ray.id = r.id, query.ray.flags = 0;
+    query.ray.mask = ~0u, query.ray.id = r.id;
+    query.ray.flags = r.fromCamera ? EmbreeScene::kFromCamera : 0;
     if (anyHit) {
         rtcOccluded1(scene, &context, &query.ray);
         return query.ray.tfar < 0;
@@ -73,8 +74,7 @@ uint64_t replayCalls(const EmbreeScene& scene, const RecordedRays& record) {
 
 uint64_t replayBare(const EmbreeScene& scene, const RecordedRays& record) {
     return sumOverCalls(record, [&](const RecordedRays::Call& call) {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
+        EmbreeScene::Context context(scene, raysOf(record, call));
         context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
         uint64_t count = 0;
         for (const BatchRay& ray : raysOf(record, call)) count += bareHits(scene.handle(), context, ray, call.anyHit);

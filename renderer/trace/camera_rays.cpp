@@ -49,6 +49,7 @@ PathStart cameraStart(const CameraPose& camera, Vec2 pixelPosition, Vec2 lens, f
     start.ray.origin = transformPoint(camera.worldFromCamera, origin);
     start.ray.direction = glm::normalize(transformVector(camera.worldFromCamera, direction * inverseLength));
     start.ray.time = time;
+    start.ray.fromCamera = true;
     // A pixel's footprint is pixelSize at view depth 1, and the ray gains view depth at the cosine of its angle.
     const float cosine = std::abs(direction.z) * inverseLength;
     start.cone = perspective ? RayCone{0, scale * cosine} : RayCone{scale, 0};

@@ -1,15 +1,17 @@
-// Embree geometries of meshes and light bodies, and the filter that makes them transparent.
+// Embree geometries of meshes and light bodies, and the filters that make them transparent and single-sided.
+#include <algorithm>
 #include <cstring>
 
 #include "math/hash.h"
 #include "trace/coverage.h"
 #include "trace/embree_parts.h"
+#include "trace/packets.h"
 
 namespace lumi {
 
 RTCScene EmbreeScene::newScene() const {
     RTCScene scene = rtcNewScene(device_);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
     return scene;
 }
@@ -98,6 +100,55 @@ void EmbreeScene::filter(const RTCFilterFunctionNArguments* arguments) {
         // A blended hit stands with probability alpha; a masked one at alpha >= cutoff.
         const bool stands = material.alphaMode == AlphaMode::Mask ? alpha >= least : alpha > least;
         if (!stands) arguments->valid[i] = 0;
+    }
+}
+
+EmbreeScene::Context::Context(const EmbreeScene& of, std::span<const BatchRay> rays) : scene(&of) {
+    rtcInitIntersectContext(this);
+    const auto fromCamera = [](const BatchRay& ray) { return ray.fromCamera; };
+    if (of.hidesBackFaces_ && std::any_of(rays.begin(), rays.end(), fromCamera)) filter = &EmbreeScene::filterBackFaces;
+}
+
+namespace {
+
+/// glTF's back-face culling. Rays that leave glass meet its faces from behind: what transmits has two sides always.
+bool isSingleSided(const Material& material) { return !material.doubleSided && material.transmission == 0; }
+
+}  // namespace
+
+void EmbreeScene::findSides(const PosedScene& posed) {
+    sides_.assign(plans_.size(), Sides());
+    hidesBackFaces_ = false;
+    const bool anywhere = std::any_of(posed.scene->materials.begin(), posed.scene->materials.end(), isSingleSided);
+    for (uint32_t i = 0; anywhere && i < plans_.size(); ++i) {
+        const Plan& plan = plans_[i];
+        if (plan.mode == Mode::None || plan.mode == Mode::Body || plan.mode == Mode::MovingBody) continue;
+        // An instance is traced in its own space, where glTF's front faces turn counter-clockwise, mirrored or not.
+        sides_[i].turned = plan.mode == Mode::Direct && glm::determinant(glm::mat3(plan.worldFromObject)) < 0;
+        const std::vector<uint32_t>& ofTriangles = plan.mesh->triangleMaterial;
+        const bool one = posed.scene->instances[i].material >= 0 || ofTriangles.empty();
+        const size_t triangles = one ? 1 : ofTriangles.size();
+        for (uint32_t t = 0; t < triangles && !sides_[i].single; ++t) sides_[i].single = isSingleSided(posed.material(i, t));
+        hidesBackFaces_ |= sides_[i].single;
+    }
+}
+
+void EmbreeScene::filterBackFaces(const RTCFilterFunctionNArguments* arguments) {
+    const EmbreeScene& scene = *static_cast<const Context*>(arguments->context)->scene;
+    const unsigned n = arguments->N;
+    RTCRayN* ray = arguments->ray;
+    RTCHitN* hit = arguments->hit;
+    for (unsigned i = 0; i < n; ++i) {
+        if (arguments->valid[i] == 0 || !(RTCRayN_flags(ray, n, i) & kFromCamera)) continue;
+        const uint32_t placed = RTCHitN_instID(hit, n, i, 0);
+        const uint32_t instance = placed != RTC_INVALID_GEOMETRY_ID ? placed : RTCHitN_geomID(hit, n, i);
+        const Sides sides = scene.sides_[instance];
+        if (!sides.single) continue;
+        const float along = RTCHitN_Ng_x(hit, n, i) * RTCRayN_dir_x(ray, n, i) +
+                            RTCHitN_Ng_y(hit, n, i) * RTCRayN_dir_y(ray, n, i) +
+                            RTCHitN_Ng_z(hit, n, i) * RTCRayN_dir_z(ray, n, i);
+        const bool back = sides.turned ? along < 0 : along > 0;
+        if (back && isSingleSided(scene.posed_->material(instance, RTCHitN_primID(hit, n, i)))) arguments->valid[i] = 0;
     }
 }
 

@@ -95,9 +95,10 @@ bool EmbreeScene::bind(const PosedScene& posed) {
     posed_ = &posed;
     try {
         std::vector<Plan> plans = makePlans(posed);
-        if (top_ && update(posed, plans)) return false;
-        rebuild(posed, std::move(plans));
-        return true;
+        const bool updated = top_ && update(posed, plans);
+        if (!updated) rebuild(posed, std::move(plans));
+        findSides(posed);
+        return !updated;
     } catch (...) {
         clear();
         top_ = newScene();

@@ -10,6 +10,7 @@
 namespace lumi {
 
 class RayRecorder;
+struct BatchRay;
 
 /// The Embree side of a posed scene. The top-level scene's geometry ids are instance indices:
 ///   rigid meshes that are placed once and never move: world-space triangles of the top level;
@@ -22,8 +23,18 @@ class RayRecorder;
 ///
 /// Alpha: filter functions reject hits on masked texels, and on blended ones with probability 1 - alpha by a hash of
 /// the ray's id, the instance and the primitive.
+///
+/// Camera rays (kFromCamera in the ray's flags) pass the back faces of single-sided opaque materials: the filter of a
+/// Context rejects those hits. It costs all others nothing.
 class EmbreeScene {
 public:
+    static constexpr unsigned kFromCamera = 1;
+    /// What a call of Embree for rays of this scene takes.
+    struct Context : RTCIntersectContext {
+        Context(const EmbreeScene& of, std::span<const BatchRay> rays);
+        const EmbreeScene* scene;
+    };
+
     EmbreeScene();
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;
@@ -68,11 +79,19 @@ private:
     void makeAttachment(const PosedScene& posed, uint32_t index);
     void throwIfFailed(const char* step) const;
     static void filter(const RTCFilterFunctionNArguments* arguments);
+    static void filterBackFaces(const RTCFilterFunctionNArguments* arguments);
+    void findSides(const PosedScene& posed);
 
     RTCDevice device_ = nullptr;
     RTCScene top_ = nullptr;
     int packetWidth_ = 1, shadowPacketWidth_ = 1;
     const PosedScene* posed_ = nullptr;
+    /// Of each instance: has it a surface whose back the camera does not see, and does Embree see its faces turned round?
+    struct Sides {
+        bool single = false, turned = false;
+    };
+    std::vector<Sides> sides_;
+    bool hidesBackFaces_ = false;
     RayRecorder* recorder_ = nullptr;
     std::unique_ptr<Monitor> monitor_;
     std::vector<Plan> plans_;

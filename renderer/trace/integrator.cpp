@@ -67,7 +67,8 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
         const PathStart& start = starts[i];
         PathState& path = batch.paths[i];
         path = PathState();
-        path.ray = {start.ray.origin, start.ray.tmin, start.ray.direction, start.ray.tmax, start.ray.time, 0};
+        path.ray = {start.ray.origin, start.ray.tmin, start.ray.direction, start.ray.tmax, start.ray.time, 0,
+                    start.ray.fromCamera};
         path.cone = start.cone;
         path.stream = SampleStream(settings_.sampler, settings_.haltonLoop, seed_, start.key);
         path.hash = hashCombine(hashCombine(start.key.x, start.key.y), start.key.sample, seed_);
@@ -123,6 +124,7 @@ void Integrator::findHits(PathBatch& batch, int depth, bool coherent, TraceCount
     for (size_t row = 0; row < batch.active.size(); ++row) {
         const PathState& path = batch.paths[batch.active[row]];
         batch.rays[row] = path.ray;
+        batch.rays[row].fromCamera = depth == 0 && path.ray.fromCamera;
         batch.rays[row].id = pcgHash(path.hash + static_cast<uint32_t>(2 * depth));
     }
     // The last ray of a path only asks whether it meets the sky, if nothing else shines: any hit will do.

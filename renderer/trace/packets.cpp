@@ -34,12 +34,13 @@ struct Packet<16> {
 
 /// `coherent` lets Embree follow a packet by its frustum, which makes camera rays two to three times as fast. Never for
 /// occlusion: Embree 3.13.5 does not return then for some packets of shadow rays towards a sky over robust instances.
-RTCIntersectContext makeContext(bool coherent) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+EmbreeScene::Context makeContext(const EmbreeScene& scene, std::span<const BatchRay> rays, bool coherent) {
+    EmbreeScene::Context context(scene, rays);
     context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     return context;
 }
+
+unsigned flagsOf(const BatchRay& ray) { return ray.fromCamera ? EmbreeScene::kFromCamera : 0; }
 
 template <int N, class PacketRay>
 void fill(PacketRay& packet, int* valid, std::span<const BatchRay> rays) {
@@ -52,7 +53,7 @@ void fill(PacketRay& packet, int* valid, std::span<const BatchRay> rays) {
         packet.dir_x[i] = r.direction.x, packet.dir_y[i] = r.direction.y, packet.dir_z[i] = r.direction.z;
         packet.tnear[i] = r.tmin, packet.tfar[i] = r.tmax;
         packet.time[i] = r.time;
-        packet.mask[i] = ~0u, packet.id[i] = r.id, packet.flags[i] = 0;
+        packet.mask[i] = ~0u, packet.id[i] = r.id, packet.flags[i] = flagsOf(r);
     }
 }
 
@@ -62,7 +63,7 @@ RTCRay singleRay(const BatchRay& r) {
     ray.dir_x = r.direction.x, ray.dir_y = r.direction.y, ray.dir_z = r.direction.z;
     ray.tnear = r.tmin, ray.tfar = r.tmax;
     ray.time = r.time;
-    ray.mask = ~0u, ray.id = r.id, ray.flags = 0;
+    ray.mask = ~0u, ray.id = r.id, ray.flags = flagsOf(r);
     return ray;
 }
 
@@ -111,7 +112,7 @@ void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std
     assert(hits.size() >= rays.size());
     if (RayRecorder* recorder = scene.recorder()) recorder->add(false, coherence, rays);
     const bool coherent = coherence == Coherence::Coherent;
-    RTCIntersectContext context = makeContext(coherent);
+    EmbreeScene::Context context = makeContext(scene, rays, coherent);
     const int width = coherent ? scene.packetWidth() : 1;
     if (width == 16) return intersectPackets<16>(scene.handle(), rays, hits, context);
     if (width == 8) return intersectPackets<8>(scene.handle(), rays, hits, context);
@@ -132,7 +133,7 @@ void occludedRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std:
                   Coherence coherence) {
     assert(blocked.size() >= rays.size());
     if (RayRecorder* recorder = scene.recorder()) recorder->add(true, coherence, rays);
-    RTCIntersectContext context = makeContext(false);
+    EmbreeScene::Context context = makeContext(scene, rays, false);
     const int width = scene.shadowPacketWidth();
     if (width == 16) return occludedPackets<16>(scene.handle(), rays, blocked, context);
     if (width == 8) return occludedPackets<8>(scene.handle(), rays, blocked, context);

@@ -14,6 +14,7 @@ struct BatchRay {
     float tmax = kInfinity;
     float time = 0;
     uint32_t id = 0;
+    bool fromCamera = false;  ///< as Ray::fromCamera
 };
 
 /// What Embree says of a hit; bodies of lights are named later.

@@ -13,6 +13,9 @@ struct Ray {
     Vec3 direction{0, 0, -1};  ///< unit
     float tmax = kInfinity;
     float time = 0;            ///< 0 at shutter open, 1 at close
+    /// A camera's: it does not see the back faces of single-sided opaque materials, as glTF asks. For all other rays every
+    /// face is solid, so that what such a surface casts and blocks does not depend on the side.
+    bool fromCamera = false;
 };
 
 /// A point of a surface that keeps its meaning while things move: what modules store, re-shade and reproject.

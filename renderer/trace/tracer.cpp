@@ -273,7 +273,7 @@ void toBatchRays(std::span<const Ray> rays, std::vector<BatchRay>& out, size_t f
     out.resize(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) {
         const Ray& r = rays[i];
-        out[i] = {r.origin, r.tmin, r.direction, r.tmax, r.time, pcgHash(static_cast<uint32_t>(firstId + i))};
+        out[i] = {r.origin, r.tmin, r.direction, r.tmax, r.time, pcgHash(static_cast<uint32_t>(firstId + i)), r.fromCamera};
     }
 }
 
