@@ -4,17 +4,26 @@
 
 #include "base/parallel.h"
 #include "filter/atrous_kernels.h"
+#include "filter/spatial_variance_kernels.h"
 
 namespace lumi {
 namespace {
 
-constexpr int64_t kRows = 8;  ///< rows of one task
+constexpr int64_t kRows = 16;  ///< rows of one task
 
-AtrousRow geometryOf(const SurfaceGuide& guide, const EdgeStopping& edges, int step) {
-    AtrousRow row;
+/// The i-th row of an image of `height` rows in the order 0, step, 2 step, ..., 1, 1 + step, ...: those that follow each other
+/// share four of the five rows of their windows, which then are in the cache still.
+int rowInStride(int64_t i, int64_t height, int64_t step) {
+    const int64_t rows = height / step, longer = height % step;  // the first `longer` of the strides have a row more
+    const int64_t split = longer * (rows + 1);
+    if (i < split) return static_cast<int>(i % (rows + 1) * step + i / (rows + 1));
+    return static_cast<int>((i - split) % rows * step + longer + (i - split) / rows);
+}
+
+GuideRow guideRow(const SurfaceGuide& guide, const EdgeStopping& edges) {
+    GuideRow row;
     row.width = guide.width;
     row.height = guide.height;
-    row.step = step;
     row.inverseDepth = guide.inverseDepth;
     row.slopeX = guide.slopeX;
     row.slopeY = guide.slopeY;
@@ -45,7 +54,9 @@ bool atrousLevel(const SurfaceGuide& guide, const AtrousSettings& settings, int 
                  const std::vector<const Illumination*>& in, const std::vector<Illumination*>& out, std::stop_token stop) {
     assert(in.size() == out.size() && in.size() <= AtrousRow::kMaxComponents);
     const AtrousKernels& kernels = atrousKernels();
-    AtrousRow shared = geometryOf(guide, settings.edges, step);
+    AtrousRow shared;
+    shared.guide = guideRow(guide, settings.edges);
+    shared.step = step;
     shared.components = static_cast<int>(in.size());
     for (size_t c = 0; c < in.size(); ++c) {
         out[c]->reset({guide.width, guide.height});
@@ -61,8 +72,8 @@ bool atrousLevel(const SurfaceGuide& guide, const AtrousSettings& settings, int 
     parallelRanges(guide.height, kRows, [&](int64_t begin, int64_t end) {
         AtrousRow row = shared;
         std::vector<float> scales(static_cast<size_t>(guide.width) * in.size());
-        for (int y = static_cast<int>(begin); y < end; ++y) {
-            row.y = y;
+        for (int64_t i = begin; i < end; ++i) {
+            const int y = row.guide.y = rowInStride(i, guide.height, step);
             for (size_t c = 0; c < in.size(); ++c) {
                 float* scale = scales.data() + c * static_cast<size_t>(guide.width);
                 kernels.luminanceScaleRow(in[c]->sampleVariance.data(), guide.width, guide.height, y,
@@ -76,16 +87,21 @@ bool atrousLevel(const SurfaceGuide& guide, const AtrousSettings& settings, int 
 }
 
 bool estimateVarianceSpatially(const SurfaceGuide& guide, const EdgeStopping& edges, const float* historyLength,
-                               float minLength, const float* mean, const float* centred, float* sampleVariance,
-                               std::stop_token stop) {
-    const AtrousKernels& kernels = atrousKernels();
+                               float minLength, const std::vector<MomentPlanes>& components, std::stop_token stop) {
+    assert(components.size() <= SpatialVarianceRow::kMaxComponents);
+    SpatialVarianceRow shared;
+    shared.guide = guideRow(guide, edges);
+    shared.historyLength = historyLength;
+    shared.minLength = minLength;
+    shared.components = static_cast<int>(components.size());
+    for (size_t c = 0; c < components.size(); ++c) {
+        shared.mean[c] = components[c].mean;
+        shared.centred[c] = components[c].centred;
+        shared.variance[c] = components[c].sampleVariance;
+    }
     parallelRanges(guide.height, kRows, [&](int64_t begin, int64_t end) {
-        AtrousRow row = geometryOf(guide, edges, 1);
-        for (int y = static_cast<int>(begin); y < end; ++y) {
-            row.y = y;
-            kernels.spatialVarianceRow(row, historyLength, minLength, mean, centred,
-                                       sampleVariance + static_cast<std::ptrdiff_t>(y) * guide.width);
-        }
+        SpatialVarianceRow row = shared;
+        for (row.guide.y = static_cast<int>(begin); row.guide.y < end; ++row.guide.y) spatialVarianceKernels().estimateRow(row);
     }, stop);
     return !stop.stop_requested();
 }

@@ -31,11 +31,17 @@ struct AtrousSettings {
 bool atrousLevel(const SurfaceGuide& guide, const AtrousSettings& settings, int step,
                  const std::vector<const Illumination*>& in, const std::vector<Illumination*>& out, std::stop_token stop);
 
+/// One component's luminance moments, planes of one channel.
+struct MomentPlanes {
+    const float* mean;      ///< first moment
+    const float* centred;   ///< second moment about it
+    float* sampleVariance;  ///< what is estimated
+};
+
 /// Variance where the history is shorter than `minLength` frames, from a 7x7 window weighted by depth and world-space
-/// normals [Schied17, sec. 4.2]. `mean` and `centred` are the first moment and the second about it, one channel each;
-/// where the history is long enough `sampleVariance` becomes `centred`. Returns false if stopped.
+/// normals [Schied17, sec. 4.2]; where the history is long enough `sampleVariance` becomes `centred`. All components (at
+/// most two) share their weights. Returns false if stopped.
 bool estimateVarianceSpatially(const SurfaceGuide& guide, const EdgeStopping& edges, const float* historyLength,
-                               float minLength, const float* mean, const float* centred, float* sampleVariance,
-                               std::stop_token stop);
+                               float minLength, const std::vector<MomentPlanes>& components, std::stop_token stop);
 
 }  // namespace lumi

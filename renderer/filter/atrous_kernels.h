@@ -1,6 +1,6 @@
 #pragma once
 #include "base/isa.h"
-#include "filter/edge_stopping.h"
+#include "filter/guide_row.h"
 
 namespace lumi {
 
@@ -19,13 +19,8 @@ struct IlluminationOutput {
 /// One row of one level for up to two components that share their geometric weights.
 struct AtrousRow {
     static constexpr int kMaxComponents = 2;
-    int width = 0, height = 0, y = 0;
+    GuideRow guide;
     int step = 1;  ///< pixels between the kernel's taps, 2^level
-    const float* inverseDepth = nullptr;
-    const float* slopeX = nullptr;
-    const float* slopeY = nullptr;
-    const float* normal[3] = {nullptr, nullptr, nullptr};
-    EdgeStopping edges;
     int components = 1;
     IlluminationView in[kMaxComponents];
     /// log2(e) / (sigma_l sqrt(g3x3(Var) + epsilon)) of the row's pixels, one array a component.
@@ -42,10 +37,6 @@ struct AtrousKernels {
                               float* scale);
     /// Rec. 709 luminance of a row.
     void (*luminanceRow)(const float* const rgb[3], float* out, int width);
-    /// Variance of luminance over a 7x7 window weighted by depth and normals (sec. 4.2), where historyLength < minLength;
-    /// elsewhere `centred`. `mean` and `centred` are planes of first and second centred moments, `variance` is a row.
-    void (*spatialVarianceRow)(const AtrousRow& row, const float* historyLength, float minLength, const float* mean,
-                               const float* centred, float* variance);
 };
 
 LUMI_KERNELS(AtrousKernels, atrous)

@@ -71,13 +71,12 @@ bool SvgfModule::estimateVariance(const FrameContext& context, const TemporalHis
     const float least = parameters_.varianceSource == VarianceSource::Spatial
                             ? std::numeric_limits<float>::max()
                             : static_cast<float>(parameters_.spatialVarianceFrames);
+    std::vector<MomentPlanes> planes;
     for (size_t c = 0; c < kComponents; ++c) {
         const TemporalComponent& component = integrated.components[c];
-        if (!estimateVarianceSpatially(guide, atrousSettings().edges, integrated.length.data(), least, component.mean.data(),
-                                       component.sampleVariance.data(), input_[c].sampleVariance.data(), context.stop))
-            return false;
+        planes.push_back({component.mean.data(), component.sampleVariance.data(), input_[c].sampleVariance.data()});
     }
-    return true;
+    return estimateVarianceSpatially(guide, atrousSettings().edges, integrated.length.data(), least, planes, context.stop);
 }
 
 const SvgfModule::Levels* SvgfModule::filterSpatially(const FrameContext& context) {

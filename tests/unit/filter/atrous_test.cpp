@@ -93,6 +93,21 @@ Filtered filterPixel(const Planes& planes, const Illumination& light, const Atro
     return sum;
 }
 
+/// Variance of what `mean` and `centred` stand for, over 7x7 pixels around p.
+double windowVariance(const Planes& planes, const AtrousSettings& geometry, const Image& mean, const Image& centred, Pixel p) {
+    double weights = 0, first = 0, second = 0;
+    for (int j = -3; j <= 3; ++j)
+        for (int i = -3; i <= 3; ++i) {
+            const Pixel q{p.x + i, p.y + j};
+            if (q.x < 0 || q.y < 0 || q.x >= kExtent.width || q.y >= kExtent.height) continue;
+            const double w = i == 0 && j == 0 ? 1 : weight(planes, planes.light[0], geometry, p, q), m = mean.at(0, q.x, q.y);
+            weights += w;
+            first += w * m;
+            second += w * (centred.at(0, q.x, q.y) + m * m);
+        }
+    return second / weights - first * first / (weights * weights);
+}
+
 TEST(Atrous, EachLevelIsEquation1OnEveryInstructionSet) {
     const Planes planes(1);
     const Isa best = detectIsa();
@@ -144,38 +159,42 @@ TEST(Atrous, SkyTakesNothingAndGivesNothing) {
 }
 
 // Sec. 4.2: the bilateral 7x7 estimate, only where the history is short.
-TEST(SpatialVariance, IsTheWeightedVarianceOfTheWindow) {
+TEST(SpatialVariance, IsTheWeightedVarianceOfTheWindowOnEveryInstructionSet) {
     const Planes planes(4);
     Random random(9);
-    Image length(kExtent, 1), mean(kExtent, 1), centred(kExtent, 1), variance(kExtent, 1);
+    Image length(kExtent, 1);
+    struct Moments {
+        Image mean{kExtent, 1}, centred{kExtent, 1}, variance{kExtent, 1};
+    } moments[2];
     for (size_t i = 0; i < length.size(); ++i) {
         length.data()[i] = random.between(0, 1) < 0.3f ? 2.0f : 9.0f;
-        mean.data()[i] = random.between(0, 1);
-        centred.data()[i] = random.between(0, 0.1f);
-        variance.data()[i] = -1;
-    }
-    AtrousSettings geometry;
-    geometry.edges.sigmaLuminance = 1e30f;
-    ASSERT_TRUE(estimateVarianceSpatially(planes.guide(), geometry.edges, length.data(), 4, mean.data(), centred.data(), variance.data(), {}));
-    for (int y = 0; y < kExtent.height; ++y)
-        for (int x = 0; x < kExtent.width; ++x) {
-            if (length.at(0, x, y) >= 4) {
-                ASSERT_EQ(variance.at(0, x, y), centred.at(0, x, y));
-                continue;
-            }
-            double weights = 0, first = 0, second = 0;
-            for (int j = -3; j <= 3; ++j)
-                for (int i = -3; i <= 3; ++i) {
-                    const Pixel q{x + i, y + j};
-                    if (q.x < 0 || q.y < 0 || q.x >= kExtent.width || q.y >= kExtent.height) continue;
-                    const double w = i == 0 && j == 0 ? 1 : weight(planes, planes.light[0], geometry, {x, y}, q);
-                    const double m = mean.at(0, q.x, q.y);
-                    weights += w;
-                    first += w * m;
-                    second += w * (centred.at(0, q.x, q.y) + m * m);
-                }
-            ASSERT_NEAR(variance.at(0, x, y), second / weights - first * first / (weights * weights), 1e-4) << x << ' ' << y;
+        for (Moments& m : moments) {
+            m.mean.data()[i] = random.between(0, 1);
+            m.centred.data()[i] = random.between(0, 0.1f);
         }
+    }
+    const Isa best = detectIsa();
+    for (const Isa isa : {Isa::Baseline, Isa::V3, Isa::V4})
+        for (const bool variant : {false, true}) {
+            if (isa > best) continue;
+            setIsa(isa);
+            AtrousSettings geometry;
+            geometry.edges = {variant ? 0.5f : 1.0f, variant ? 37.0f : 128.0f, 1e30f, variant};
+            std::vector<MomentPlanes> views;
+            for (Moments& m : moments) {
+                m.variance.fill(-1);
+                views.push_back({m.mean.data(), m.centred.data(), m.variance.data()});
+            }
+            ASSERT_TRUE(estimateVarianceSpatially(planes.guide(), geometry.edges, length.data(), 4, views, {}));
+            for (const Moments& m : moments)
+                for (int y = 0; y < kExtent.height; ++y)
+                    for (int x = 0; x < kExtent.width; ++x) {
+                        const double expected = length.at(0, x, y) >= 4 ? m.centred.at(0, x, y)
+                                                                        : windowVariance(planes, geometry, m.mean, m.centred, {x, y});
+                        ASSERT_NEAR(m.variance.at(0, x, y), expected, length.at(0, x, y) >= 4 ? 0 : 1e-4) << x << ' ' << y;
+                    }
+        }
+    setIsa(best);
 }
 
 }  // namespace
