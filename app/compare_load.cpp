@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "app/compare_parts.h"
 #include "base/error.h"
@@ -50,9 +49,8 @@ struct LoadedFile {
 
 LoadedFile load(const fs::path& path, bool layers) {
     LoadedFile file;
-    const std::string extension = lowerExtension(path);
-    file.linear = extension == ".exr" || extension == ".hdr" || extension == ".pic" || extension == ".rgbe";
-    if (extension == ".exr") {
+    file.linear = isLinearFile(path);
+    if (lowerExtension(path) == ".exr") {
         const ExrLayers content = readExr(path);
         file.rgb = content.image("", "RGB");
         if (const auto state = content.strings.find(kStateKey); state != content.strings.end())
@@ -93,19 +91,13 @@ ExposureUsed exposureBesidePicture(const CompareOptions& options, const fs::path
     return used;
 }
 
-/// Takes back the exposure that a picture holds, so that it is linear as the file beside it and is shown as it is stored.
-void takeBack(Image& picture, float exposureEv) {
-    const float factor = std::exp2(-exposureEv);
-    for (size_t i = 0; i < picture.size(); ++i) picture.data()[i] *= factor;
-}
-
 /// Decides on the exposure; of two files of which one is a picture, the picture's is taken back.
 ExposureUsed matchExposures(const CompareOptions& options, const fs::path& imagePath, LoadedFile& image,
                             const fs::path& referencePath, LoadedFile& reference) {
     if (image.linear != reference.linear) {
         const ExposureUsed used = image.linear ? exposureBesidePicture(options, imagePath, image, referencePath)
                                                : exposureBesidePicture(options, referencePath, reference, imagePath);
-        takeBack(image.linear ? reference.rgb : image.rgb, used.ev);
+        takeBackExposure(image.linear ? reference.rgb : image.rgb, used.ev);
         return used;
     }
     if (options.exposureEv) return {*options.exposureEv, "--exposure", ""};

@@ -17,4 +17,9 @@ Image decodeHdr(std::span<const uint8_t> bytes, const std::string& name);
 /// .jpg, .jpeg, .bmp, .tga decoded from sRGB (16-bit PNG in full precision). Throws Error(BadInput).
 Image loadImage(const std::filesystem::path& path);
 
+/// Does such a file hold linear values? If not it is a picture as shown: exposure and tone curve are in it.
+bool isLinearFile(const std::filesystem::path& path);
+/// Takes back the exposure that a picture as shown holds, so that exposed again it is shown as it is stored.
+void takeBackExposure(Image& picture, float exposureEv);
+
 }  // namespace lumi

@@ -1,3 +1,4 @@
+#include <cmath>
 #include "base/error.h"
 #include "base/files.h"
 #include "image/decode.h"
@@ -60,6 +61,16 @@ Image loadImage(const std::filesystem::path& path) {
     if (extension == ".jpg" || extension == ".jpeg" || extension == ".bmp" || extension == ".tga")
         return linearFromBytes(decodeImage8(readFile(path), path.string()));
     throwBadInput({"unknown image format", path.string(), ".exr, .hdr, .png, .jpg, .bmp or .tga", extension});
+}
+
+bool isLinearFile(const std::filesystem::path& path) {
+    const std::string extension = lowerExtension(path);
+    return extension == ".exr" || extension == ".hdr" || extension == ".pic" || extension == ".rgbe";
+}
+
+void takeBackExposure(Image& picture, float exposureEv) {
+    const float factor = std::exp2(-exposureEv);
+    for (size_t i = 0; i < picture.size(); ++i) picture.data()[i] *= factor;
 }
 
 }  // namespace lumi

@@ -22,10 +22,11 @@ void lowerPriority() {
     setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 10);
 }
 
-std::shared_ptr<const Image8> shown(const Image& image, float exposureEv) {
+std::shared_ptr<const Image8> shown(const Image& image, float exposureEv, ToneCurve curve = DisplaySettings().curve) {
     auto pixels = std::make_shared<Image8>();
     DisplaySettings settings;
     settings.exposureEv = exposureEv;
+    settings.curve = curve;
     convert(image, "RGB", "none", settings, *pixels);
     return pixels;
 }
@@ -36,6 +37,7 @@ std::shared_ptr<const Image8> shown(const Image& image, float exposureEv) {
 struct LiveMetrics::Held {
     Image image;
     ReferenceSpec spec;
+    bool asShown = false;  ///< a picture with its exposure in it
 };
 
 struct LiveMetrics::Made {
@@ -86,8 +88,9 @@ void LiveMetrics::loadReference(const std::filesystem::path& file, float exposur
     inBackground([file, exposureEv](std::stop_token) {
         Made made{std::make_shared<Held>(), {}};
         made.held->image = loadImage(file);
+        made.held->asShown = !isLinearFile(file);
         made.status.name = file.filename().string();
-        made.status.picture = shown(made.held->image, exposureEv);
+        made.status.picture = made.held->asShown ? shown(made.held->image, 0, ToneCurve::Clamp) : shown(made.held->image, exposureEv);
         return made;
     });
 }
@@ -228,6 +231,7 @@ LiveMeasurement LiveMetrics::measure(const Snapshot& snapshot, const Held& refer
         pair.image = *image->second;
         pair.reference = reference.image;
         pair.exposureEv = snapshot.scene->scene->render.exposureEv;
+        if (reference.asShown) takeBackExposure(pair.reference, pair.exposureEv);
         pair.prepare();
         pane.nonFinitePixels = pair.nonFinitePixels;
         for (const std::string& id : metrics) {
@@ -257,7 +261,8 @@ void LiveMetrics::note(const LiveMeasurement& measurement) {
         std::vector<ConvergencePoint> thinned(curve.begin(), curve.begin() + kMostPoints / 2);
         for (size_t k = kMostPoints / 2; k < curve.size(); k += 2) thinned.push_back(curve[k]);
         curve = std::move(thinned);
-    }    curves_ = std::move(curves);
+    }
+    curves_ = std::move(curves);
 }
 
 void showMaps(const std::vector<Image>& maps, const char* colourMap, std::vector<PaneMeasurement>& panes) {

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "image/exr.h"
+#include "image/png.h"
 #include "support/session_test.h"
 #include "support/temporary_folder.h"
 
@@ -61,6 +62,26 @@ TEST_F(LiveMetricsTest, MeasuresEachPaneAgainstAFile) {
     metrics.clearReference();
     EXPECT_EQ(metrics.latest(), nullptr);
     EXPECT_FALSE(metrics.reference().present);
+}
+
+// A PNG holds the exposure of the scene: it must not be applied to it a second time.
+TEST_F(LiveMetricsTest, APictureAsShownIsComparedAsShown) {
+    open();
+    pause();
+    const float exposure = session.document().loadedScene()->render.exposureEv;
+    ASSERT_GT(exposure, 0.5f);
+    DisplaySettings settings;
+    settings.exposureEv = exposure;
+    settings.curve = ToneCurve::Clamp;
+    Image8 pixels;
+    convert(result(), "RGB", "none", settings, pixels);
+    writePng(folder / "picture.png", pixels);
+    metrics.choose({"rmse"}, "");
+    metrics.loadReference(folder / "picture.png", exposure);
+    waitForReference();
+    EXPECT_LT(measured()->panes[0].values.at("rmse"), 1.0 / 255);
+    ASSERT_NE(metrics.reference().picture, nullptr);
+    EXPECT_EQ(metrics.reference().picture->rgba, pixels.rgba) << "and shown as it is stored";
 }
 
 TEST_F(LiveMetricsTest, AReferenceOfAnotherSizeMeasuresNothing) {
