@@ -9,7 +9,7 @@ namespace {
 constexpr int64_t kRows = 8;
 constexpr int64_t kGrain = 1 << 14;
 
-TaaRow rowOf(const Signals& signals, const TaaSettings& settings, const Image& compressed, const Image* previous) {
+TaaRow rowOf(const TaaMotion& motion, const TaaSettings& settings, const Image& compressed, const Image* previous) {
     TaaRow row;
     row.width = compressed.width();
     row.height = compressed.height();
@@ -17,8 +17,8 @@ TaaRow rowOf(const Signals& signals, const TaaSettings& settings, const Image& c
         row.compressed[c] = compressed.plane(c).data;
         row.previous[c] = previous ? previous->plane(c).data : nullptr;
     }
-    for (int c = 0; c < 2; ++c) row.motion[c] = signals[Signal::Motion].plane(c).data;
-    row.inverseDepth = signals[Signal::InverseDepth].data();
+    for (int c = 0; c < 2; ++c) row.motion[c] = motion.motion.plane(c).data;
+    row.inverseDepth = motion.nearness.data();
     row.alpha = settings.alpha;
     row.gamma = settings.gamma;
     row.clip = settings.clip;
@@ -46,7 +46,7 @@ void TaaSettings::describe(ParameterVisitor& v) {
     });
 }
 
-bool antialiasTemporally(const Signals& signals, const TaaSettings& settings, const Image& colour, const Image* previous,
+bool antialiasTemporally(const TaaMotion& motion, const TaaSettings& settings, const Image& colour, const Image* previous,
                          Image& scratch, Image& next, Image& out, std::stop_token stop) {
     const Extent2 extent = colour.extent();
     if (previous && previous->extent() != extent) previous = nullptr;
@@ -61,7 +61,7 @@ bool antialiasTemporally(const Signals& signals, const TaaSettings& settings, co
         }
         taaKernels().compressRow(in, to, static_cast<int>(end - begin));
     });
-    const TaaRow shared = rowOf(signals, settings, scratch, previous);
+    const TaaRow shared = rowOf(motion, settings, scratch, previous);
     parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
         TaaRow row = shared;
         for (row.y = static_cast<int>(begin); row.y < end; ++row.y) {

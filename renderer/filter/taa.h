@@ -24,13 +24,25 @@ struct TaaSettings {
     void describe(ParameterVisitor& v);
 };
 
+/// Along what the history is fetched: planes X and Y of `motion` in pixels (previous minus current), at that of a pixel's
+/// 3x3 where `nearness` is greatest. That is 1/depth; methods whose motion is that of samples take its length.
+struct TaaMotion {
+    const Image& motion;
+    const Image& nearness;
+};
+
 /// What antialiasTemporally() reads.
 inline SignalSet taaSignals() { return {Signal::Motion, Signal::InverseDepth}; }
 
 /// `colour` (RGB, scene-linear) with `previous` (the last frame's `next`, or null) into `next` (compressed, what the next
 /// frame needs) and `out` (scene-linear; may be `colour`). What is not finite counts as 0 and does not reach a
 /// neighbour's history. `scratch` is any image. Returns false if stopped; outputs are then undefined.
-bool antialiasTemporally(const Signals& signals, const TaaSettings& settings, const Image& colour, const Image* previous,
+bool antialiasTemporally(const TaaMotion& motion, const TaaSettings& settings, const Image& colour, const Image* previous,
                          Image& scratch, Image& next, Image& out, std::stop_token stop);
+inline bool antialiasTemporally(const Signals& signals, const TaaSettings& settings, const Image& colour, const Image* previous,
+                                Image& scratch, Image& next, Image& out, std::stop_token stop) {
+    return antialiasTemporally({signals[Signal::Motion], signals[Signal::InverseDepth]}, settings, colour, previous, scratch, next, out,
+                               stop);
+}
 
 }  // namespace lumi

@@ -7,8 +7,11 @@
 #include "reconstruct/accumulate/accumulate.h"
 #include "reconstruct/asvgf/asvgf.h"
 #include "reconstruct/eaw/eaw.h"
+#include "reconstruct/martin2002/martin2002.h"
 #include "reconstruct/none/none.h"
 #include "reconstruct/sbf/sbf.h"
+#include "reconstruct/stable/stable.h"
+#include "reconstruct/supersampling/supersampling.h"
 #include "reconstruct/svgf/svgf.h"
 #include "reconstruct/taa/taa.h"
 #include "reconstruct/temporal/temporal.h"
@@ -30,6 +33,9 @@ std::vector<ModuleEntry>& catalog() {
         {"eaw", "Edge-avoiding à-trous wavelets", "Dammertz10", make<EawModule>},
         {"sbf", "SURE-based cross-bilateral bank", "Li12", make<SbfModule>},
         {"aaf", "Axis-aligned filtering of soft shadows", "Mehta12", make<AafModule>},
+        {"stable", "Interactive stable ray tracing", "DalCorso17", make<StableModule>},
+        {"supersampling", "Supersampling", "DalCorso17", make<SupersamplingModule>},
+        {"martin2002", "Temporally coherent ray tracing", "Martin02", make<Martin2002Module>},
         {"temporal", "Temporal accumulation", "Schied17", make<TemporalModule>},
         {"taa", "Temporal antialiasing", "Karis14", make<TaaModule>},
     };

@@ -76,7 +76,7 @@ protected:
     }
 
     static bool isDim(FrameNumber frame) { return frame >= 4; }
-    static float shift(FrameNumber frame) { return frame < 3 ? 0.0f : frame == 3 ? 0.03f : 0.07f; }
+    static float shift(FrameNumber frame) { return frame < 3 ? 0.0f : frame == 3 ? 0.03f : 0.15f; }
 
     /// Everything that the module shows over the frames; `disturbed` replaces the signals of the last but one.
     static std::string play(Module& module, const Signals* disturbed = nullptr) {
@@ -88,7 +88,7 @@ protected:
             const Changes changes{.cut = frame == 0, .camera = shift(frame) != shift(frame - 1), .lights = isDim(frame) != isDim(frame - 1)};
             harness_->dimLights(isDim(frame));
             const bool replaced = disturbed && frame == kFrames - 2;
-            EXPECT_EQ(harness_->run(module, {frame, changes, shift(frame), false},
+            EXPECT_EQ(harness_->run(module, {frame, changes, shift(frame), false, shift(frame - 1)},
                                     replaced ? *disturbed : *frames_[static_cast<size_t>(frame)], out),
                       RunResult::Completed);
             digests += digestOf(out, module) + '\n';

@@ -65,6 +65,7 @@ public:
         Changes changes;
         float shift = 0;
         bool stopped = false;
+        std::optional<float> previousShift{};  ///< that of the frame itself if it is not given
     };
     RunResult run(Module& module, const Step& step, const Signals& signals, Image& out) {
         TapSet wanted;
@@ -75,7 +76,7 @@ public:
         const CameraPose pose = camera(step.shift);
         const FrameSampling sampling = samplingOf(step.frame, step.shift);
         return module.run(
-            {step.frame, signals, *posed_, pose, pose, step.changes, wanted, tracer_, sampling, timer, stop.get_token(), inspected}, out);
+            {step.frame, signals, *posed_, pose, camera(step.previousShift.value_or(step.shift)), step.changes, wanted, tracer_, sampling, timer, stop.get_token(), inspected}, out);
     }
     /// The image of a completed run; frame 0 is a cut.
     Image image(Module& module, FrameNumber frame, const Signals& signals, Changes changes = {}) {
@@ -115,6 +116,9 @@ inline std::vector<const ModuleEntry*> catalogueEntries() {
     for (const ModuleEntry& entry : moduleCatalog()) entries.push_back(&entry);
     return entries;
 }
+/// Does it place its own rays? What a test makes up as signals does not reach it then.
+inline bool tracesItself(const Module& module) { return module.reads().empty(); }
+
 inline std::string testName(const testing::TestParamInfo<const ModuleEntry*>& entry) {
     std::string name = entry.param->id;
     std::replace(name.begin(), name.end(), '-', '_');

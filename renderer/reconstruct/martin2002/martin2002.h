@@ -1,0 +1,53 @@
+#pragma once
+#include <array>
+#include <memory>
+
+#include "frame/history.h"
+#include "reconstruct/captured_taps.h"
+#include "reconstruct/stable/sample_set.h"
+
+namespace lumi {
+
+/// Temporally coherent ray tracing with one sample a pixel [Martin02], as [DalCorso17, sec. 6] adapts it: the samples of
+/// the frame before are projected to where their surfaces are, the closest of those that land in a pixel stays, a pixel
+/// without one gets a new ray through its middle, and the last three frames are averaged. It reads no signals.
+///
+/// Differs from the papers:
+/// - A sample is traced again through the place where it landed: what the ray meets is the pixel's sample from then on, if
+///   it is not the surface point that was expected (verification after Adelson and Hodges, which [Martin02] shares).
+/// - Objects move and deform, as in [DalCorso17]; [Martin02] knows moving viewpoints only.
+/// - The box filter averages images, pixel by pixel; `frames` is its length.
+class Martin2002Module : public Module {
+public:
+    Martin2002Module();
+    SignalSet reads() const override { return {}; }
+    void describe(ParameterVisitor&) override;
+    void resize(Extent2) override;
+    void forget() override;
+    RunResult run(const FrameContext&, Image& out) override;
+    std::span<const Tap> taps() const override { return taps_.declared(); }
+    const Image& tap(const std::string& name) const override;
+    size_t byteCount() const override;
+
+private:
+    static constexpr int kMostFrames = 8;
+    /// A frame: the sample of each pixel, and the images that the box filter of the next one still needs.
+    struct Kept {
+        std::vector<SampleLocation> locations;
+        std::vector<Vec2> places;
+        std::vector<uint32_t> names, pathsDrawn, ages;
+        std::vector<std::shared_ptr<const Image>> images;  ///< the newest first
+    };
+    void reproject(const FrameContext& context, const Kept& previous, Kept& next);
+    void verifyAndShade(const FrameContext& context, Kept& next, Image& image);
+    void verifyAndShade(const FrameContext& context, std::span<const uint32_t> pixels, Kept& next, Image& image);
+
+    Extent2 extent_;
+    int frames_ = 3;
+    FrameHistory<Kept> history_;
+    std::vector<Vec3> inWorld_;
+    std::vector<uint8_t> codes_;  ///< of the tap `verdicts`
+    CapturedTaps taps_;
+};
+
+}  // namespace lumi

@@ -1,0 +1,36 @@
+#pragma once
+#include "reconstruct/module.h"
+#include "reconstruct/stable/sample_set.h"
+
+namespace lumi {
+
+/// Where the samples of the frame before have gone [DalCorso17, sec. 4.1].
+struct ReprojectedSamples {
+    std::vector<uint32_t> words;    ///< a pixel of this frame: occupancy, and occlusion as it was in the frame before
+    std::vector<uint32_t> first;    ///< a pixel: where in `sources` its samples begin; those of a pixel follow each other
+    std::vector<uint32_t> sources;  ///< index in the frame before, in the order of a pixel's sub-pixels
+    std::vector<Vec2> places;       ///< of each sample of the frame before on this frame's screen
+    std::vector<Vec3> inWorld;      ///< of each; see placeInWorld()
+
+    // Scratch, kept for its memory.
+    std::vector<uint32_t> targets;  ///< of each sample: 16 * pixel + sub-pixel, with kOccluded if it was; or kNowhere
+    std::vector<uint32_t> order;    ///< samples by the row they land in
+    static constexpr uint32_t kNowhere = ~0u, kOccluded = 1u << 31;
+    size_t bytes() const {
+        return 4 * (words.size() + first.size() + sources.size() + targets.size() + order.size()) + (sizeof(Vec2) + sizeof(Vec3)) * places.size();
+    }
+};
+
+/// Projects every sample of `previous` to where its surface point is now and stores it there by Algorithm 1, in the order
+/// in which the samples lie, so that which of two stays never depends on threads. Samples off the image, behind the
+/// camera, of surfaces that the scene no longer has or that have shrunk to nothing a number can name are dropped.
+/// Returns false if stopped.
+bool reprojectSamples(const FrameContext& context, const SampleSet& previous, ReprojectedSamples& out);
+
+/// World position of a surface sample, or the unit direction of one in the sky.
+Vec3 placeInWorld(const Tracer& tracer, const SampleLocation& location);
+
+/// Continuous pixel where `camera` sees a sample; false if it does not. Its own lens and shutter play no part.
+bool placeOnScreen(const CameraPose& camera, const SampleLocation& location, const Vec3& inWorld, Vec2& place);
+
+}  // namespace lumi

@@ -1,0 +1,143 @@
+#include "reconstruct/stable/stable_taps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reconstruct/stable/stable.h"
+
+namespace lumi {
+namespace {
+
+/// Fills a tap of one channel with a value a pixel.
+template <class Value>
+void fill(Image* out, Extent2 extent, Value value) {
+    if (!out) return;
+    out->reset(extent, 1);
+    for (int64_t pixel = 0; pixel < extent.area(); ++pixel) out->data()[pixel] = value(static_cast<size_t>(pixel));
+}
+
+/// Mean of `value` over a pixel's visible samples; 0 without any.
+template <class Value>
+float meanOfVisible(const SampleFrame& frame, const SampleSet& samples, size_t pixel, Value value) {
+    float sum = 0, count = 0;
+    for (uint32_t i = samples.first[pixel]; i < samples.first[pixel + 1]; ++i) {
+        if (frame.hidden[i]) continue;
+        sum += static_cast<float>(value(samples.lights[i]));
+        ++count;
+    }
+    return count > 0 ? sum / count : 0;
+}
+
+float verdictCode(const SampleFrame& frame, const SampleSet& samples, size_t pixel) {
+    constexpr float kCodes[] = {2, 1, 3, 4, 5};  // by Verdict
+    float code = 0;
+    for (uint32_t i = samples.first[pixel]; i < samples.first[pixel + 1]; ++i)
+        code = std::max(code, kCodes[static_cast<size_t>(frame.verdicts[i])]);
+    return code;
+}
+
+/// Lanes of the packets that went to a pixel's samples.
+float lanesOf(const SampleSet& samples, VerificationSettings::Batches batches, size_t pixel) {
+    const auto countOf = [&](size_t p) { return samples.first[p + 1] - samples.first[p]; };
+    if (batches == VerificationSettings::Batches::Dense) return static_cast<float>(countOf(pixel));
+    const auto width = static_cast<size_t>(samples.extent.width);
+    const size_t row = pixel / width * width, left = (pixel - row) / 16 * 16;
+    uint32_t most = 0;
+    for (size_t x = left; x < std::min(left + 16, width); ++x) most = std::max(most, countOf(row + x));
+    return static_cast<float>(most);
+}
+
+void drawChanges(const SampleFrame& frame, Extent2 extent, Image* out) {
+    if (!out) return;
+    out->reset(extent, 3);
+    for (int64_t pixel = 0; pixel < extent.area(); ++pixel) {
+        const PixelChange& change = frame.changes[static_cast<size_t>(pixel)];
+        out->plane(0).data[pixel] = static_cast<float>(std::popcount(change.removed));
+        out->plane(1).data[pixel] = static_cast<float>(std::popcount(change.added));
+    }
+}
+
+}  // namespace
+
+std::vector<Tap> stableTaps() {
+    return {
+        {.name = "subpixels", .channels = "RGB", .colourMap = "none", .help = "The 4x4 sub-pixels of the pixels around the one under the pointer, or around the middle, each drawn as a pixel: visible samples blue, occluded red (fig. 6)"},
+        {.name = "occupancy", .channels = "Y", .rangeHigh = 65535, .help = "The 16 occupancy bits as a number; bit b is sub-pixel b, in rows from the top left"},
+        {.name = "occlusion", .channels = "Y", .rangeHigh = 65535, .help = "The 16 occlusion bits as a number"},
+        {.name = "sampleCount", .channels = "Y", .unit = "samples", .rangeHigh = 4, .help = "Visible samples in the pixel"},
+        {.name = "density", .channels = "Y", .unit = "samples/px", .rangeHigh = 4, .help = "Local density d after reprojection: visible samples in the 2x2 pixels around (sec. 4.2)"},
+        {.name = "changes", .channels = "RGB", .colourMap = "none", .help = "Samples that the analysis added (green) and removed (red), as in fig. 4"},
+        {.name = "age", .channels = "Y", .unit = "frames", .rangeHigh = 64, .help = "Mean age of the pixel's visible samples"},
+        {.name = "holes", .channels = "Y", .rangeHigh = 2, .colourMap = "magma", .help = "1: no visible sample in the pixel; 2: none in its 3x3 pixels, filled from neighbours"},
+        {.name = "verdicts", .channels = "Y", .rangeHigh = 5, .colourMap = "turbo", .help = "The worst verdict on the pixel's samples: 0 none, 1 visible, 2 new, 3 occluded, 4 moved to what occludes it, 5 missed and evicted"},
+        {.name = "indirectCount", .channels = "Y", .unit = "paths", .rangeHigh = 16, .help = "Mean number of paths in the indirect light of the pixel's visible samples"},
+        {.name = "lanes", .channels = "Y", .unit = "rays", .rangeHigh = 8, .help = "Lanes of the packets of visibility rays that went to the pixel, idle ones included"},
+        {.name = "sampleMotion", .channels = "XY", .unit = "px", .rangeLow = -8, .rangeHigh = 8, .colourMap = "wheel", .help = "The longest motion among the pixel's visible samples, previous minus current place"},
+        {.name = "reconstructed", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "The image before temporal integration"}};
+}
+
+void drawSubpixels(const SampleSet& samples, Pixel centre, Image& out) {
+    const Vec3 kVisible(0.05f, 0.25f, 1), kOccluded(1, 0.05f, 0.05f), kNone(0), kEmpty[2] = {Vec3(0.02f), Vec3(0.06f)};
+    const Extent2 extent = samples.extent;
+    out.reset(extent, 3);
+    const int left = centre.x - extent.width / (2 * subpixel::kSide), top = centre.y - extent.height / (2 * subpixel::kSide);
+    for (int y = 0; y < extent.height; ++y)
+        for (int x = 0; x < extent.width; ++x) {
+            const Pixel p{left + x / subpixel::kSide, top + y / subpixel::kSide};
+            Vec3 colour = kNone;
+            if (p.x >= 0 && p.y >= 0 && p.x < extent.width && p.y < extent.height) {
+                const uint32_t word = samples.words[static_cast<size_t>(p.y) * static_cast<size_t>(extent.width) + static_cast<size_t>(p.x)];
+                const uint32_t bit = subpixel::bit(y % subpixel::kSide * subpixel::kSide + x % subpixel::kSide);
+                colour = subpixel::visible(word) & bit ? kVisible : subpixel::occupied(word) & bit ? kOccluded : kEmpty[(p.x + p.y) & 1];
+            }
+            for (int c = 0; c < 3; ++c) out.at(c, x, y) = colour[c];
+        }
+}
+
+void StableModule::keepTaps(const FrameContext& context, const SampleSet& samples) {
+    if (context.wantedTaps.empty()) return;
+    if (Image* out = taps_.target("subpixels"))
+        drawSubpixels(samples, context.inspected.value_or(Pixel{extent_.width / 2, extent_.height / 2}), *out);
+    fill(taps_.target("occupancy"), extent_, [&](size_t p) { return static_cast<float>(subpixel::occupied(samples.words[p])); });
+    fill(taps_.target("occlusion"), extent_, [&](size_t p) { return static_cast<float>(subpixel::occluded(samples.words[p])); });
+    fill(taps_.target("sampleCount"), extent_, [&](size_t p) { return static_cast<float>(std::popcount(subpixel::visible(samples.words[p]))); });
+    taps_.keep("density", localDensity_);
+    drawChanges(frame_, extent_, taps_.target("changes"));
+    fill(taps_.target("age"), extent_, [&](size_t p) { return meanOfVisible(frame_, samples, p, [](const SampleLight& l) { return l.age; }); });
+    fill(taps_.target("holes"), extent_, [&](size_t p) {
+        return !(weights_.data()[p] > 0) ? 2.0f : subpixel::visible(samples.words[p]) ? 0.0f : 1.0f;
+    });
+    fill(taps_.target("verdicts"), extent_, [&](size_t p) { return verdictCode(frame_, samples, p); });
+    fill(taps_.target("indirectCount"), extent_,
+         [&](size_t p) { return meanOfVisible(frame_, samples, p, [](const SampleLight& l) { return l.indirectCount; }); });
+    fill(taps_.target("lanes"), extent_, [&](size_t p) { return lanesOf(samples, verification_.batches, p); });
+    taps_.keep("sampleMotion", motion_);
+}
+
+/// The samples that the image at a pixel is made of.
+void StableModule::inspect(const FrameContext& context, const SampleSet& samples) {
+    lineage_ = {};
+    const auto& at = context.inspected;
+    if (!at || at->x < 0 || at->y < 0 || at->x >= extent_.width || at->y >= extent_.height) return;
+    lineage_.pixel = *at;
+    float sum = 0;
+    const Vec2 centre = Vec2(at->x, at->y) + 0.5f;
+    const bool box = scattered_.filter == ScatteredSettings::Filter::Box;
+    for (int y = std::max(at->y - 1, 0); y <= std::min(at->y + 1, extent_.height - 1); ++y)
+        for (int x = std::max(at->x - 1, 0); x <= std::min(at->x + 1, extent_.width - 1); ++x) {
+            const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(extent_.width) + static_cast<size_t>(x);
+            for (uint32_t i = samples.first[pixel]; i < samples.first[pixel + 1]; ++i) {
+                const Vec2 off = samples.places[i] - centre;
+                float weight = std::exp(-glm::dot(off, off) / (2 * sqr(scattered_.sigma)));
+                if (box) weight = Pixel{x, y} == *at ? 1.0f : 0.0f;
+                if (frame_.hidden[i]) weight = 0;
+                sum += weight;
+                const char* kNames[] = {"new", "visible", "occluded", "moved to what occludes it", "missed"};
+                lineage_.rows.push_back({"reconstruction", {x, y}, weight,
+                                         std::string(kNames[static_cast<size_t>(frame_.verdicts[i])]) + ", age " + std::to_string(samples.lights[i].age)});
+            }
+        }
+    for (Lineage::Row& row : lineage_.rows) row.weight = sum > 0 ? row.weight / sum : 0;
+}
+
+}  // namespace lumi
