@@ -139,7 +139,7 @@ void printPairs(const Study& study, const StudyOutcome& outcome) {
         };
         const bool timed = equal.otherAtEqualTime.count > 0, valued = equal.otherMsAtEqualValue.count > 0;
         table.add({fmt::format("  {}, {}", study.scenes[equal.scene].name, outcome.plan.methods[equal.method].name), std::to_string(equal.spp),
-                   equal.metric, shown(equal.ms), shown(equal.value), outcome.plan.methods[equal.against].name, reached(equal.otherAtEqualTime),
+                   equal.metric, shown(equal.ms), shown(equal.value), equal.against, reached(equal.otherAtEqualTime),
                    timed ? shownDifference(equal.differenceAtEqualTime) : "-  ", reached(equal.otherMsAtEqualValue),
                    valued ? shown(equal.timesAsLong) : "-"});
     }
@@ -148,11 +148,40 @@ void printPairs(const Study& study, const StudyOutcome& outcome) {
     table.print();
 }
 
+/// A row an entry: the frame, its phases, and what a ray costs.
+void printTimes(const Study& study, const StudyOutcome& outcome) {
+    for (size_t scene = 0; scene < study.scenes.size(); ++scene) {
+        std::set<std::string> stages;
+        for (const StudyMeanTime& time : outcome.times.methods)
+            for (const auto& [stage, ms] : time.stagesMs)
+                if (time.scene == scene) stages.insert(stage);
+        TextTable table;
+        std::vector<std::string> head{study.scenes[scene].name + ", ms a frame", "spp", "frame", "trace"};
+        head.insert(head.end(), stages.begin(), stages.end());
+        head.insert(head.end(), {"Mrays a frame", "ns a ray"});
+        table.add(std::move(head));
+        for (const StudyMeanTime& time : outcome.times.methods) {
+            if (time.scene != scene) continue;
+            std::vector<std::string> row{"  " + outcome.plan.methods[time.method].name, std::to_string(time.spp), shown(time.frameMs), shown(time.traceMs)};
+            for (const std::string& stage : stages) {
+                const auto found = time.stagesMs.find(stage);
+                row.push_back(found == time.stagesMs.end() ? "-" : shown(found->second));
+            }
+            row.push_back(fmt::format("{:.3f}", time.raysPerFrame.mean * 1e-6));
+            row.push_back(shown(time.nsPerRay));
+            table.add(std::move(row));
+        }
+        if (table.empty()) continue;
+        std::puts("");
+        table.print();
+    }
+}
+
 void printChecks(const Study& study, const StudyOutcome& outcome) {
     TextTable table;
     table.add({"claims", "scene", "spp", "value", "against", "ratio", "verdict"});
     for (const StudyCheckResult& result : outcome.checks)
-        table.add({"  " + claimText(study.checks[result.check]), sceneName(study, result.scene), std::to_string(result.spp), shown(result.value),
+        table.add({"  " + claimText(study, study.checks[result.check]), sceneName(study, result.scene), std::to_string(result.spp), shown(result.value),
                    result.against.empty() ? "-" : result.against, result.against.empty() ? "-" : shown(result.ratio), verdictText(result.verdict)});
     if (table.empty()) return;
     std::puts("");
@@ -166,6 +195,7 @@ void printStudy(const StudyOutcome& outcome) {
     printResults(study, outcome);
     printNonFinite(study, outcome);
     printStages(study, outcome);
+    printTimes(study, outcome);
     printPairs(study, outcome);
     printChecks(study, outcome);
 }

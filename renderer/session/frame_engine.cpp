@@ -11,6 +11,12 @@
 namespace lumi {
 namespace {
 
+/// Rays since `earlier`.
+TraceCounts difference(const TraceCounts& now, const TraceCounts& earlier) {
+    return {now.cameraRays - earlier.cameraRays, now.bounceRays - earlier.bounceRays, now.shadowRays - earlier.shadowRays,
+            now.nonFinite - earlier.nonFinite};
+}
+
 /// The worst that the differences between two lists of one module's parameters invalidate; nothing: none differ.
 std::optional<Redo> worstChange(const std::vector<ParameterInfo>& before, const std::vector<ParameterInfo>& now) {
     std::optional<Redo> worst;
@@ -210,9 +216,12 @@ bool FrameEngine::runModules(const FrameRequest& request, const Completed& next,
         const FrameContext context{request.frame, *next.signals, *next.scene, next.camera, previousCamera,
                                    changes,       wanted,        tracer_,     asked,       timer,          stop, request.inspected};
         auto out = std::make_shared<Image>();
+        const TraceCounts before = tracer_.counts();
         const Timer run;
         if (!runModule(name, context, *out, frame)) return false;
         frame.runMs[name] = run.elapsedMs();
+        frame.runRays[name] = difference(tracer_.counts(), before);
+        frame.readsSignals[name] = !current.module->reads().empty();
         if (current.firstFrame < 0) current.firstFrame = request.frame;
         current.lastFrame = request.frame;
         current.parameters = next.document.list(name + ".");

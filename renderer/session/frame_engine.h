@@ -46,6 +46,8 @@ struct FrameOutput {
     std::map<std::string, Lineage> lineages;                      ///< by instance, of the pixel asked about
     std::vector<std::pair<std::string, double>> stagesMs;
     std::map<std::string, double> runMs;  ///< by instance: its run() as a whole
+    std::map<std::string, TraceCounts> runRays;  ///< by instance: those that it traced itself, beside `rays`
+    std::map<std::string, bool> readsSignals;    ///< by instance: does it read any of the frame's signals?
     double frameMs = 0;
     TraceCounts rays;
 

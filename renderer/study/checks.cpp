@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace lumi {
 namespace {
 
 using Verdict = StudyCheckResult::Verdict;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// The method of an entry that is neither swept nor without a stage.
 std::optional<size_t> methodOf(const Study& study, const StudyPlan& plan, const std::string& entry) {
@@ -59,20 +61,100 @@ bool isWorse(const StudyCheck& check, const StudyCheckResult& a, const StudyChec
     return check.atLeast ? a.ratio.mean < b.ratio.mean : a.ratio.mean > b.ratio.mean;
 }
 
+/// The sample counts that an entry runs with, ascending.
+std::vector<int> countsOf(const Study& study, const std::string& name) {
+    const StudyEntry* entry = study.entry(name);
+    std::vector<int> counts = entry && !entry->spp.empty() ? entry->spp : study.spp;
+    std::sort(counts.begin(), counts.end());
+    return counts;
+}
+
+/// What claims are judged by.
+struct Evidence {
+    const Study& study;
+    const StudyPlan& plan;
+    const StudyRowIndex& rows;
+    const StudyTimes& times;
+};
+
+/// A quantity of every seed, in the study's order; nothing if the method did not run so.
+std::vector<double> seedValues(const Evidence& evidence, size_t scene, size_t method, int spp, const std::string& quantity) {
+    if (isTimeQuantity(quantity)) {
+        const StudyMeanTime* time = evidence.times.find(scene, method, spp);
+        return time ? time->bySeed(quantity) : std::vector<double>{};
+    }
+    std::vector<double> values;
+    bool any = false;
+    for (const SeedCurve& curve : seedCurves(evidence.study, evidence.rows, scene, method, quantity)) {
+        const auto point = std::find(curve.spp.begin(), curve.spp.end(), static_cast<double>(spp));
+        any = any || point != curve.spp.end();
+        values.push_back(point == curve.spp.end() ? kNaN : curve.value[static_cast<size_t>(point - curve.spp.begin())]);
+    }
+    return any ? values : std::vector<double>{};
+}
+
+/// On the curve through the points, straight in log-log space, and a little beyond its ends (by a quarter of the place).
+double onCurve(std::vector<std::pair<double, double>> points, double at) {
+    std::sort(points.begin(), points.end());
+    std::vector<double> x, y;
+    for (const auto& [place, value] : points) x.push_back(place), y.push_back(value);
+    const double inside = logLogAt(x, y, at);
+    if (std::isfinite(inside) || x.size() < 2) return inside;
+    const bool below = at < x.front() && at >= x.front() / 1.25, above = at > x.back() && at <= x.back() * 1.25;
+    if (!below && !above) return kNaN;
+    const size_t i = below ? 0 : x.size() - 2;
+    const double slope = std::log(y[i + 1] / y[i]) / std::log(x[i + 1] / x[i]);
+    return y[i] * std::pow(at / x[i], slope);
+}
+
+/// The values of the curve through the others' sample counts, seed by seed, where `check.atEqual` is what the method has.
+std::vector<double> curveValues(const Evidence& evidence, const StudyCheck& check, size_t scene, size_t method, int spp) {
+    const std::vector<double> places = seedValues(evidence, scene, method, spp, check.atEqual);
+    std::vector<std::vector<std::pair<double, double>>> points(places.size());
+    for (const std::string& name : check.against) {
+        const std::optional<size_t> other = methodOf(evidence.study, evidence.plan, name);
+        for (const int count : other ? countsOf(evidence.study, name) : std::vector<int>{}) {
+            const std::vector<double> a = seedValues(evidence, scene, *other, count, check.atEqual), b = seedValues(evidence, scene, *other, count, check.metric);
+            for (size_t seed = 0; seed < places.size() && seed < a.size() && seed < b.size(); ++seed)
+                if (std::isfinite(a[seed]) && std::isfinite(b[seed])) points[seed].emplace_back(a[seed], b[seed]);
+        }
+    }
+    std::vector<double> values;
+    for (size_t seed = 0; seed < places.size(); ++seed) values.push_back(onCurve(points[seed], places[seed]));
+    return values;
+}
+
+/// A claim at equal cost.
+StudyCheckResult resultAtEqual(const Evidence& evidence, const StudyCheck& check, const std::vector<double>& own, size_t method, StudyCheckResult result) {
+    for (const std::string& name : check.against) result.against += (result.against.empty() ? "" : ", ") + name;
+    const std::vector<double> values = curveValues(evidence, check, result.scene, method, result.spp);
+    result.ratio = meanInterval({}, evidence.study.intervals.level);
+    if (values.size() != own.size()) return result;
+    result.ratio = ratioInterval(evidence.study, own, values);
+    result.verdict = judge(evidence.study, excessOf(check, own, &values));
+    return result;
+}
+
 /// One claim on one scene. Every name in it gets a verdict: what is not there makes it unknown, and never goes unsaid.
-StudyCheckResult resultOf(const Study& study, const StudyPlan& plan, const StudyRowIndex& rows, size_t index, size_t scene, int spp) {
+StudyCheckResult resultOf(const Evidence& evidence, size_t index, size_t scene, int spp) {
+    const Study& study = evidence.study;
     const StudyCheck& check = study.checks[index];
-    const std::optional<size_t> method = methodOf(study, plan, check.entry);
-    const std::vector<double> own = method ? unitValues(study, rows, scene, *method, spp, check.metric) : std::vector<double>{};
+    const bool bySeed = check.timed() || !check.atEqual.empty();
+    const auto valuesOf = [&](const std::optional<size_t>& method) {
+        if (!method) return std::vector<double>{};
+        return bySeed ? seedValues(evidence, scene, *method, spp, check.metric) : unitValues(study, evidence.rows, scene, *method, spp, check.metric);
+    };
+    const std::optional<size_t> method = methodOf(study, evidence.plan, check.entry);
+    const std::vector<double> own = valuesOf(method);
     StudyCheckResult result{index, scene, spp, "", meanInterval(own, study.intervals.level, intervalMethod(study)), {}, check.bound, Verdict::Unknown};
+    if (!check.atEqual.empty() && method) return resultAtEqual(evidence, check, own, *method, result);
     if (check.against.empty()) {
         result.verdict = judge(study, excessOf(check, own, nullptr));
         return result;
     }
     std::optional<StudyCheckResult> worst;
     for (const std::string& name : check.against) {
-        const std::optional<size_t> other = methodOf(study, plan, name);
-        const std::vector<double> values = other ? unitValues(study, rows, scene, *other, spp, check.metric) : std::vector<double>{};
+        const std::vector<double> values = valuesOf(methodOf(study, evidence.plan, name));
         StudyCheckResult one = result;
         one.against = name;
         if (values.size() == own.size()) {
@@ -86,17 +168,9 @@ StudyCheckResult resultOf(const Study& study, const StudyPlan& plan, const Study
     return *worst;
 }
 
-/// The sample counts that an entry runs with, ascending.
-std::vector<int> countsOf(const Study& study, const std::string& name) {
-    const StudyEntry* entry = study.entry(name);
-    std::vector<int> counts = entry && !entry->spp.empty() ? entry->spp : study.spp;
-    std::sort(counts.begin(), counts.end());
-    return counts;
-}
-
 }  // namespace
 
-std::vector<StudyCheckResult> checkClaims(const Study& study, const StudyPlan& plan, const StudyRecords& records) {
+std::vector<StudyCheckResult> checkClaims(const Study& study, const StudyPlan& plan, const StudyRecords& records, const StudyTimes& times) {
     std::vector<StudyCheckResult> results;
     const StudyRowIndex rows(records);
     for (size_t index = 0; index < study.checks.size(); ++index)
@@ -104,8 +178,9 @@ std::vector<StudyCheckResult> checkClaims(const Study& study, const StudyPlan& p
             // On average means over all scenes; where there is one scene that is the average.
             const bool average = scene == kAllScenes || rows.scenes().size() == 1;
             if (study.checks[index].onAverage ? !average : scene == kAllScenes) continue;
+            if (!study.checks[index].scene.empty() && study.checks[index].scene != study.scenes[scene].name) continue;
             for (const int spp : countsOf(study, study.checks[index].entry))
-                results.push_back(resultOf(study, plan, rows, index, scene, spp));
+                results.push_back(resultOf({study, plan, rows, times}, index, scene, spp));
         }
     return results;
 }
@@ -121,11 +196,12 @@ const char* verdictText(StudyCheckResult::Verdict verdict) {
     return "";
 }
 
-std::string claimText(const StudyCheck& check) {
+std::string claimText(const Study& study, const StudyCheck& check) {
     if (!check.title.empty()) return check.title;
-    std::string text = fmt::format("{} of {} {} {:g}", titleOf(check.metric), check.entry, check.atLeast ? "at least" : "at most", check.bound);
+    std::string text = fmt::format("{} of {} {} {:g}", titleOf(study, check.metric), check.entry, check.atLeast ? "at least" : "at most", check.bound);
     for (size_t i = 0; i < check.against.size(); ++i)
         text += fmt::format("{}{}", i == 0 ? " times that of " : i + 1 == check.against.size() ? " and " : ", ", check.against[i]);
+    if (!check.atEqual.empty()) text += " at equal " + titleOf(study, check.atEqual);
     return text + (check.onAverage ? ", on average over the scenes" : "");
 }
 

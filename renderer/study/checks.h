@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "study/summary.h"
+#include "study/times.h"
 
 namespace lumi {
 
@@ -26,11 +27,13 @@ struct StudyCheckResult {
 /// and the interval of the units' differences to the bound tells so. WithinNoise: as claimed, but the interval does not tell
 /// it from the contrary. Fails: not as claimed, and the interval tells so. FailsWithinNoise: the means are not as claimed,
 /// but the interval does not tell. Unknown: there is no value, or one of those to compare with did not run at this count.
-std::vector<StudyCheckResult> checkClaims(const Study& study, const StudyPlan& plan, const StudyRecords& records);
+/// A claim about times, or at equal cost, is judged seed by seed; against several entries at equal cost these are one curve,
+/// straight between its points in log-log space; more than a quarter out of its range there is no value.
+std::vector<StudyCheckResult> checkClaims(const Study& study, const StudyPlan& plan, const StudyRecords& records, const StudyTimes& times);
 
 /// "holds", "holds within the noise", "fails within the noise", "fails", "unknown".
 const char* verdictText(StudyCheckResult::Verdict verdict);
 /// The claim in words: its own, or "rmse of svgf at most 1.03 times eaw's".
-std::string claimText(const StudyCheck& check);
+std::string claimText(const Study& study, const StudyCheck& check);
 
 }  // namespace lumi

@@ -105,7 +105,7 @@ void checkJobValues(const JobContext& context, const StudyJob& job) {
     if (const auto& step = context.study.frames.step) setAll(document, step->set), setAll(problem, step->set);
 }
 
-FrameOutput FrameRunner::advance(const SignalSet& signals) {
+FrameOutput FrameRunner::advance(const SignalSet& signals, const std::map<std::string, TapSet>& taps) {
     const int64_t number = next_++;
     if (const auto& step = context_.study.frames.step; step && step->frame == number) {
         setAll(document_, step->set);
@@ -114,15 +114,15 @@ FrameOutput FrameRunner::advance(const SignalSet& signals) {
     const float time = timeOf(context_.study, document_, number);
     document_.setTime(time);
     problem_.setTime(time);
-    FrameRequest request{document_, number, number == context_.study.frames.begin, signals, {}};
+    FrameRequest request{document_, number, number == context_.study.frames.begin, signals, taps};
     for (const RunningMethod& method : methods_) request.instances.push_back(method.instance);
     std::optional<FrameOutput> frame = engine_.advance(request, context_.stop);
     if (!frame) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
     return std::move(*frame);
 }
 
-std::shared_ptr<const StudyReferenceFrame> FrameRunner::reference(const StudyReferences::Report& report) {
-    return context_.references.get(problem_, context_.stop, report);
+std::shared_ptr<const StudyReferenceFrame> FrameRunner::reference(const StudyReferences::Report& report, int spp) {
+    return context_.references.get(problem_, context_.stop, report, spp);
 }
 
 }  // namespace lumi

@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,11 +26,12 @@ public:
     /// Throws Error(BadInput) headed by the study file's position for a value that the scene's document does not take.
     FrameRunner(const JobContext& context, const StudyJob& job, std::vector<RunningMethod> methods);
 
-    /// The next frame, with `signals` beside what the methods read. Throws Error(Interrupted).
-    FrameOutput advance(const SignalSet& signals);
+    /// The next frame, with `signals` beside what the methods read, and buffers by instance. Throws Error(Interrupted).
+    FrameOutput advance(const SignalSet& signals, const std::map<std::string, TapSet>& taps = {});
     int64_t next() const { return next_; }
     /// Of the frame that was drawn last.
-    std::shared_ptr<const StudyReferenceFrame> reference(const StudyReferences::Report& report);
+    /// `spp` 0: the study's.
+    std::shared_ptr<const StudyReferenceFrame> reference(const StudyReferences::Report& report, int spp = 0);
     float exposure() const { return metricExposure(problem_); }
     const std::vector<RunningMethod>& methods() const { return methods_; }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "study/number_text.h"
 #include "study/report.h"
@@ -18,8 +19,8 @@ struct Rows {
     std::vector<std::string> lines;  ///< without the line's end; empty: a rule between groups
 };
 
-std::string metricTitle(const std::string& id) {
-    return escapedLatex(titleOf(id)) + (higherIsBetter(id) ? " $\\uparrow$" : " $\\downarrow$");
+std::string metricTitle(const Study& study, const std::string& id) {
+    return escapedLatex(titleOf(study, id)) + (higherIsBetter(study, id) ? " $\\uparrow$" : " $\\downarrow$");
 }
 
 std::string cell(const Interval& interval, bool strong = false) { return latexText(numberText(interval), strong); }
@@ -76,7 +77,7 @@ bool isSurelyBest(const StudySummaries& all, const StudySummary& summary) {
 Rows resultRows(const Study& study, const StudyPlan& plan, const StudySummaries& all, const StudyTimes& times, size_t scene) {
     const std::vector<std::string> metrics = allMetrics(study);
     Rows rows{"results-" + sceneFile(study, scene), "Results, " + (scene == kAllScenes ? "all scenes together" : study.scenes[scene].name), "", "lr", "Method & spp", {}};
-    for (const std::string& metric : metrics) rows.columns += "r", rows.head += " & " + metricTitle(metric);
+    for (const std::string& metric : metrics) rows.columns += "r", rows.head += " & " + metricTitle(study, metric);
     const bool timed = scene != kAllScenes;
     if (timed) rows.columns += "r", rows.head += " & ms / frame";
     rows.caption = fmt::format("{}: {}. {} The best value of a sample count is bold where its intervals tell it from all others.",
@@ -119,8 +120,8 @@ Rows equalRows(const Study& study, const StudyPlan& plan, const StudyTimes& time
     for (const StudyEqual& equal : times.pairs) {
         if (equal.scene != scene) continue;
         const Interval& difference = equal.differenceAtEqualTime;
-        rows.lines.push_back(joinedCells({escapedLatex(plan.methods[equal.method].name), std::to_string(equal.spp), metricTitle(equal.metric), cell(equal.ms),
-                                          cell(equal.value), escapedLatex(plan.methods[equal.against].name),
+        rows.lines.push_back(joinedCells({escapedLatex(plan.methods[equal.method].name), std::to_string(equal.spp), metricTitle(study, equal.metric), cell(equal.ms),
+                                          cell(equal.value), escapedLatex(equal.against),
                                           reachedCell(equal.otherAtEqualTime, study.seeds.size()), difference.count ? differenceCell(difference) : "--",
                                           reachedCell(equal.otherMsAtEqualValue, study.seeds.size()), equal.timesAsLong.count ? cell(equal.timesAsLong) : "--"}));
     }
@@ -145,7 +146,7 @@ std::string exceptText(const Study& study, const StudyPlan& plan) {
 Rows ablationRows(const Study& study, const StudyPlan& plan, const StudySummaries& all, const StudyTimes& times, size_t scene) {
     const std::vector<std::string> metrics = allMetrics(study);
     Rows rows{"ablation-" + sceneFile(study, scene), "Ablation, " + (scene == kAllScenes ? "all scenes together" : study.scenes[scene].name), "", "llr", "Method & Without & spp", {}};
-    for (const std::string& metric : metrics) rows.columns += "r", rows.head += " & $\\Delta$ " + metricTitle(metric);
+    for (const std::string& metric : metrics) rows.columns += "r", rows.head += " & $\\Delta$ " + metricTitle(study, metric);
     const bool timed = scene != kAllScenes;
     if (timed) rows.columns += "r", rows.head += " & $\\Delta$ ms / frame";
     rows.caption = fmt::format("{}: each stage switched off in turn, on {}. Differences to the whole method on the same samples{}. {} A difference is bold where "
@@ -166,9 +167,30 @@ Rows ablationRows(const Study& study, const StudyPlan& plan, const StudySummarie
     return rows;
 }
 
+/// A row an entry, a column a phase: what a frame's time is spent on.
+Rows timeRows(const Study& study, const StudyPlan& plan, const StudyTimes& times, size_t scene) {
+    std::set<std::string> stages;
+    for (const StudyMeanTime& time : times.methods)
+        for (const auto& [stage, ms] : time.stagesMs)
+            if (time.scene == scene) stages.insert(stage);
+    Rows rows{"times-" + sceneFile(study, scene), "Times, " + study.scenes[scene].name, "", "lrrr", "Method & spp & ms / frame & trace", {}};
+    for (const std::string& stage : stages) rows.columns += "r", rows.head += " & " + escapedLatex(stage);
+    rows.columns += "rr", rows.head += " & Mrays / frame & ns / ray";
+    rows.caption = fmt::format("{}: medians of a frame's phases on {}, in milliseconds. Times are of one machine.", escapedLatex(study.title), sceneTitle(study, scene));
+    for (const StudyMeanTime& time : times.methods) {
+        if (time.scene != scene) continue;
+        std::vector<std::string> cells{escapedLatex(plan.methods[time.method].name), std::to_string(time.spp), cell(time.frameMs), cell(time.traceMs)};
+        for (const std::string& stage : stages) cells.push_back(time.stagesMs.contains(stage) ? cell(time.stagesMs.at(stage)) : "--");
+        cells.push_back(fmt::format("{:.3f}", time.raysPerFrame.mean * 1e-6));
+        cells.push_back(time.nsPerRay.count ? cell(time.nsPerRay) : "--");
+        rows.lines.push_back(joinedCells(cells));
+    }
+    return rows;
+}
+
 Rows definitionRows(const Study& study) {
     Rows rows{"metrics", "Metrics", "The metrics of " + escapedLatex(study.title) + ".", "lp{0.78\\textwidth}", "Metric & Definition", {}};
-    for (const std::string& metric : allMetrics(study)) rows.lines.push_back(metricTitle(metric) + " & " + escapedLatex(definitionOf(study, metric)));
+    for (const std::string& metric : allMetrics(study)) rows.lines.push_back(metricTitle(study, metric) + " & " + escapedLatex(definitionOf(study, metric)));
     return rows;
 }
 
@@ -195,6 +217,8 @@ std::vector<LatexTable> latexTables(const Study& study, const StudyPlan& plan, c
     if (scenes.size() > 1) scenes.push_back(kAllScenes);
     std::vector<Rows> all;
     for (const size_t scene : scenes) all.push_back(resultRows(study, plan, summaries, times, scene));
+    for (const size_t scene : scenes)
+        if (scene != kAllScenes) all.push_back(timeRows(study, plan, times, scene));
     for (const size_t scene : scenes)
         if (scene != kAllScenes && !study.pairs.empty()) all.push_back(equalRows(study, plan, times, scene));
     for (const size_t scene : scenes)

@@ -111,10 +111,14 @@ std::string measureDefinition(const Study& study, const StudyPlan& plan, const S
     text += fmt::format(";temporal {}..{};", study.frames.temporalBegin, study.frames.temporalEnd);
     for (const std::string& metric : study.metrics) text += metric + ",";
     for (const std::string& metric : study.temporalMetrics) text += metric + ",";
+    for (const StudyStatistic& one : study.statistics)
+        text += fmt::format("{} {}.{} {} {} {} {} {} {}/{},", one.name, one.tap, one.channel, static_cast<int>(one.of), one.value, one.metric, one.referenceSpp,
+                            one.rays, one.over, one.under);
     for (const size_t index : job.methods) {
         const StudyMethod& method = plan.methods[index];
         const StudyEntry& entry = study.entries[method.entry];
         text += fmt::format(";{}={}:{}", method.name, entry.module, textOf(method.set));
+        for (const auto& [name, value] : entry.known) text += fmt::format("known {} {};", name, value);
         if (entry.tune.empty()) continue;
         text += fmt::format("tuned {} on {} seed {} ", textOf(entry.tune), study.tuning->metric, study.tuning->seed);
         text += fmt::format("frame {}", study.tuning->frame);

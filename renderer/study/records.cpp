@@ -42,8 +42,8 @@ void addChoice(const StudyJob& job, const json& result, StudyRecords& records) {
 void addTimes(const StudyPlan& plan, const StudyJob& job, const json& times, StudyRecords& records) {
     if (!times.is_object() || !times.contains("methods")) return;
     for (const auto& [name, method] : times.at("methods").items()) {
-        StudyTime time{job.scene, methodNamed(plan, name), job.spp, job.seed, number(times.at("trace_ms")),
-                       number(times.at("pose_ms")), number(method.at("run_ms")), number(times.at("rays_per_frame")),
+        StudyTime time{job.scene, methodNamed(plan, name), job.spp, job.seed, number(method.at("trace_ms")),
+                       number(times.at("pose_ms")), number(method.at("run_ms")), number(method.at("rays_per_frame")),
                        numbers(method.at("stages_ms"))};
         records.times.push_back(std::move(time));
     }

@@ -29,27 +29,28 @@ Image meanOf(const Image& a, const Image& b) {
 float metricExposure(const Document& document) { return document.view(0).display.exposureEv; }
 
 std::shared_ptr<const StudyReferenceFrame> StudyReferences::get(const Document& document, std::stop_token stop,
-                                                                const Report& report) {
+                                                                const Report& report, int wantedSpp) {
+    const int spp = wantedSpp > 0 ? wantedSpp : study_.reference.spp;
     Document problem = document;
     problem.setText("render.seed", std::to_string(kReferenceSeed));
     if (!problem.loadedScene()->isAnimated()) problem.setTime(0);  // one reference serves all frames
-    const std::string key = referenceKey(referenceSpec(problem)) + std::to_string(metricExposure(problem));
+    const std::string key = referenceKey(referenceSpec(problem)) + std::to_string(metricExposure(problem)) + ' ' + std::to_string(spp);
     for (auto kept = kept_.begin(); kept != kept_.end(); ++kept) {
         if (kept->key != key) continue;
         kept_.splice(kept_.begin(), kept_, kept);
         return kept_.front().frame;
     }
-    const std::shared_ptr<StudyReferenceFrame> made = make(problem, stop, report);
-    const std::string content = key + ' ' + std::to_string(study_.reference.spp);
+    const std::shared_ptr<StudyReferenceFrame> made = make(problem, spp, stop, report);
+    const std::string& content = key;
     made->key = digest({reinterpret_cast<const uint8_t*>(content.data()), content.size()}).substr(0, 8);
     kept_.push_front({key, made});
     if (kept_.size() > kKept) kept_.pop_back();
     return kept_.front().frame;
 }
 
-std::shared_ptr<StudyReferenceFrame> StudyReferences::make(const Document& problem, std::stop_token stop,
+std::shared_ptr<StudyReferenceFrame> StudyReferences::make(const Document& problem, int spp, std::stop_token stop,
                                                            const Report& report) {
-    const ReferenceGoal goal{static_cast<uint64_t>(study_.reference.spp / 2)};
+    const ReferenceGoal goal{static_cast<uint64_t>(spp / 2)};
     auto frame = std::make_shared<StudyReferenceFrame>();
     Image halves[2];
     frame->cached = true;

@@ -36,15 +36,15 @@ public:
     StudyReferences(const Study& study, std::filesystem::path cache, MessageLog& log)
         : study_(study), cache_(std::move(cache)), log_(log) {}
 
-    /// `document`: what is to be converged, at the frame's time. Throws Error(Interrupted).
-    std::shared_ptr<const StudyReferenceFrame> get(const Document& document, std::stop_token stop, const Report& report = {});
+    /// `document`: what is to be converged, at the frame's time; `spp` 0: as the study's reference. Throws Error(Interrupted).
+    std::shared_ptr<const StudyReferenceFrame> get(const Document& document, std::stop_token stop, const Report& report = {}, int spp = 0);
 
 private:
     struct Kept {
         std::string key;
         std::shared_ptr<const StudyReferenceFrame> frame;
     };
-    std::shared_ptr<StudyReferenceFrame> make(const Document& problem, std::stop_token stop, const Report& report);
+    std::shared_ptr<StudyReferenceFrame> make(const Document& problem, int spp, std::stop_token stop, const Report& report);
 
     const Study& study_;
     std::filesystem::path cache_;

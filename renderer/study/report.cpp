@@ -82,7 +82,7 @@ Json studyData(const Study& study, const StudyPlan& plan) {
 Json metricData(const Study& study) {
     Json all = Json::object();
     for (const std::string& id : allMetrics(study)) {
-        all[id] = {{"title", titleOf(id)}, {"definition", definitionOf(study, id)}, {"higher", higherIsBetter(id)},
+        all[id] = {{"title", titleOf(study, id)}, {"definition", definitionOf(study, id)}, {"higher", higherIsBetter(study, id)},
                    {"temporal", findTemporalMetric(id) != nullptr}};
         all[id]["squared"] = !isSquaredError(id) ? Json(false) : Json(id == "rmse" ? "root" : "mean");
     }

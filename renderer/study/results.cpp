@@ -197,13 +197,12 @@ Json intervalJson(const Interval& interval) {
             {"count", interval.count}};
 }
 
-namespace {
-
-Json checksJson(const Study& study, const std::vector<StudyCheckResult>& checks) {
+Json checksJson(const Study& study, const std::vector<StudyCheckResult>& checks, bool timed) {
     Json list = Json::array();
     for (const StudyCheckResult& result : checks) {
         const StudyCheck& check = study.checks[result.check];
-        Json entry = {{"claim", claimText(check)}, {"scene", sceneName(study, result.scene)}, {"spp", result.spp}, {"entry", check.entry},
+        if (check.timed() != timed) continue;
+        Json entry = {{"claim", claimText(study, check)}, {"scene", sceneName(study, result.scene)}, {"spp", result.spp}, {"entry", check.entry},
                       {"metric", check.metric}, {"value", intervalJson(result.value)}};
         if (!result.against.empty()) entry["against"] = result.against, entry["ratio"] = intervalJson(result.ratio);
         entry[check.atLeast ? "at_least" : "at_most"] = check.bound;
@@ -212,8 +211,6 @@ Json checksJson(const Study& study, const std::vector<StudyCheckResult>& checks)
     }
     return list;
 }
-
-}  // namespace
 
 Json resultsJson(const Study& study, const StudyPlan& plan, const StudyRecords& records, const StudySummaries& summaries,
                  const std::vector<StudyCheckResult>& checks) {
@@ -231,7 +228,7 @@ Json resultsJson(const Study& study, const StudyPlan& plan, const StudyRecords& 
     all["bias_and_variance"] = biasJson(study, plan, summaries);
     all["convergence"] = slopesJson(study, plan, summaries);
     if (!study.ablations.empty()) all["ablations"] = stagesJson(study, plan, summaries);
-    if (!study.checks.empty()) all["checks"] = checksJson(study, checks);
+    if (!study.checks.empty()) all["checks"] = checksJson(study, checks, false);
     all["nonfinite"] = nonFiniteJson(study, plan, summaries);
     if (!study.pairs.empty()) all["equivalent_samples"] = equivalentsJson(study, plan, summaries);
     return all;

@@ -19,7 +19,10 @@ std::string resultsCsv(const Study& study, const StudyPlan& plan, const StudyRec
 
 /// timings.json: wall-clock medians of this machine, a row per (scene, entry, spp), what equal times and equal errors come
 /// to for the study's pairs, and what stages cost. Never the same twice.
-nlohmann::ordered_json timingsJson(const Study& study, const StudyPlan& plan, const StudyTimes& times);
+nlohmann::ordered_json timingsJson(const Study& study, const StudyPlan& plan, const StudyTimes& times, const std::vector<StudyCheckResult>& checks = {});
+
+/// Verdicts of claims: those about times, which stand in timings.json, or the others.
+nlohmann::ordered_json checksJson(const Study& study, const std::vector<StudyCheckResult>& checks, bool timed);
 
 /// {"mean", "standard_error", "low", "high", "count"}; null where nothing is known.
 nlohmann::ordered_json intervalJson(const Interval& interval);

@@ -12,6 +12,7 @@
 #include "measure/lag.h"
 #include "measure/measure.h"
 #include "study/frame_runner.h"
+#include "study/statistics.h"
 #include "study/temporal_metrics.h"
 
 namespace lumi {
@@ -26,9 +27,14 @@ public:
         ++frames_;
         for (const auto& [stage, ms] : frame.stagesMs) stages_[stage].push_back(ms);
         for (const auto& [instance, ms] : frame.runMs) runs_[instance].push_back(ms);
-        rays_ += frame.rays.total();
+        // What nobody reads is traced for the metrics of sequences alone: it is no part of such a method's frame.
+        for (const auto& [instance, reads] : frame.readsSignals) {
+            reads_[instance] = reads_[instance] || reads;
+            rays_[instance] += frame.runRays.at(instance).total() + (reads ? frame.rays.total() : 0);
+        }
     }
     json toJson(const JobContext& context, const StudyJob& job) const {
+        const auto of = [&](const char* stage) { return stages_.count(stage) ? median(stages_.at(stage)) : 0.0; };
         json methods = json::object();
         for (const size_t index : job.methods) {
             const StudyMethod& method = context.plan.methods[index];
@@ -36,17 +42,18 @@ public:
             for (const auto& [stage, values] : stages_)
                 if (stage.starts_with(method.instance + "."))
                     stages[stage.substr(method.instance.size() + 1)] = median(values);
-            methods[method.name] = {{"run_ms", median(runs_.at(method.instance))}, {"stages_ms", stages}};
+            methods[method.name] = {{"run_ms", median(runs_.at(method.instance))}, {"stages_ms", stages},
+                                    {"trace_ms", reads_.at(method.instance) ? of("trace") : 0.0},
+                                    {"rays_per_frame", frames_ ? static_cast<double>(rays_.at(method.instance)) / frames_ : 0}};
         }
-        const auto of = [&](const char* stage) { return stages_.count(stage) ? median(stages_.at(stage)) : 0.0; };
-        return {{"frames", frames_}, {"trace_ms", of("trace")}, {"pose_ms", of("pose")}, {"build_ms", of("build")},
-                {"rays_per_frame", frames_ ? static_cast<double>(rays_) / frames_ : 0}, {"methods", methods}};
+        return {{"frames", frames_}, {"pose_ms", of("pose")}, {"build_ms", of("build")}, {"methods", methods}};
     }
 
 private:
     int frames_ = 0;
-    uint64_t rays_ = 0;
     std::map<std::string, std::vector<double>> stages_, runs_;
+    std::map<std::string, uint64_t> rays_;
+    std::map<std::string, bool> reads_;
 };
 
 json measureRow(const JobContext& context, const Image& image, const StudyReferenceFrame& reference, float exposureEv) {
@@ -60,6 +67,17 @@ json measureRow(const JobContext& context, const Image& image, const StudyRefere
         if (!measured.reason.empty()) reasons[id] = measured.reason;
     }
     return {{"metrics", metrics}, {"corrected", corrected}, {"reasons", reasons}, {"nonfinite_pixels", pair.nonFiniteImage}};
+}
+
+/// The study's statistics of one method's frame, beside the metrics.
+void addStatistics(const JobContext& context, size_t method, const FrameOutput& frame, const Image& image, FrameRunner& runner, json& row) {
+    const StudyMethod& own = context.plan.methods[method];
+    const auto against = [&](const std::string& metric, int spp) {
+        ImagePair pair{image, runner.reference({}, spp)->image, {}, runner.exposure(), context.study.metricSettings};
+        pair.prepare();
+        return findMetric(metric).measure(pair, false).value;
+    };
+    for (const auto& [name, value] : frameStatistics(context.study, context.study.entries[own.entry], own.instance, frame, against)) row["metrics"][name] = value;
 }
 
 /// 1 where a surface is seen that does not shine itself, nor does a pixel beside it: emission and sky, which methods pass
@@ -178,6 +196,8 @@ json runMeasureJob(const JobContext& context, const StudyJob& job, const std::fi
     json result = {{"rows", json::array()}, {"sequences", json::array()}, {"references", json::array()}};
     const int64_t last = lastFrame(study, job.kind);
     const double frames = static_cast<double>(last - study.frames.begin + 1);
+    std::map<std::string, TapSet> taps;
+    for (const size_t method : job.methods) taps[context.plan.methods[method].instance] = statisticTaps(study, study.entries[context.plan.methods[method].entry]);
     double done = 0, sampled = 0;
     const auto reference = [&](int64_t number) {
         auto made = runner.reference([&](uint64_t samples, uint64_t target) {
@@ -191,18 +211,20 @@ json runMeasureJob(const JobContext& context, const StudyJob& job, const std::fi
     while (runner.next() <= last) {
         const int64_t number = runner.next();
         context.progress(done / frames, sampled, fmt::format("frame {}", number));
-        const FrameOutput frame = runner.advance(sequence.signalsAt(number));
+        const bool isMeasured = std::binary_search(study.frames.measure.begin(), study.frames.measure.end(), number);
+        const FrameOutput frame = runner.advance(sequence.signalsAt(number), isMeasured ? taps : std::map<std::string, TapSet>{});
         measuredTimes.add(frame);
         done += 1;
         if (sequence.wantsReference(number)) sequence.addReference(frame, reference(number)->image);
         std::vector<std::shared_ptr<const Image>> images;
         for (const RunningMethod& method : runner.methods()) images.push_back(frame.results.at(method.instance));
         sequence.add(frame, images, runner.exposure());
-        if (!std::binary_search(study.frames.measure.begin(), study.frames.measure.end(), number)) continue;
+        if (!isMeasured) continue;
         const auto measured = reference(number);
         result["references"].push_back(referenceJson(study, job, number, *measured, runner.exposure(), out));
         for (size_t i = 0; i < images.size(); ++i) {
             json row = measureRow(context, *images[i], *measured, runner.exposure());
+            addStatistics(context, job.methods[i], frame, *images[i], runner, row);
             row["frame"] = number;
             row["method"] = context.plan.methods[job.methods[i]].name;
             result["rows"].push_back(std::move(row));

@@ -171,7 +171,7 @@ private:
     void finish() {
         outcome_.summaries = summarize(study_, plan_, outcome_.records);
         outcome_.times = summarizeTimes(study_, plan_, outcome_.records);
-        outcome_.checks = checkClaims(study_, plan_, outcome_.records);
+        outcome_.checks = checkClaims(study_, plan_, outcome_.records, outcome_.times);
         const auto write = [&](const std::string& name, std::span<const uint8_t> bytes) {
             writeFileAtomically(options_.out / name, bytes);
             outcome_.files.push_back(options_.out / name);
@@ -180,7 +180,7 @@ private:
             write(name, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
         };
         const auto results = resultsJson(study_, plan_, outcome_.records, outcome_.summaries, outcome_.checks);
-        const auto times = timingsJson(study_, plan_, outcome_.times);
+        const auto times = timingsJson(study_, plan_, outcome_.times, outcome_.checks);
         const std::vector<DrawnFigure> figures = drawFigures(study_, plan_, outcome_.records, log_);
         const std::vector<LatexTable> tables = latexTables(study_, plan_, outcome_.summaries, outcome_.times);
         const std::set<std::string> kept = filesBeside(figures, tables);

@@ -38,6 +38,7 @@ struct StudyEntry {
     std::vector<StudyValue> set;
     std::vector<StudyAxis> tune;  ///< chosen for each scene among all combinations; see StudyTuning
     std::vector<int> spp;         ///< instead of the study's; empty: those
+    std::vector<std::pair<std::string, double>> known;  ///< statistics that are so by construction, by name
 };
 
 /// From one frame on the document has other values: a lamp is switched on, a wall is painted.
@@ -75,7 +76,24 @@ struct StudyTuning {
 
 /// "What would `against` reach in the time of `entry`, and how long would it take to reach its error?"
 struct StudyPair {
-    std::string entry, against;
+    std::string entry;
+    std::vector<std::string> against;  ///< several are one method at several costs
+};
+
+/// A number of every measured frame beside the metrics. Which of its parts are there says what it is of: a buffer of the
+/// method, a metric against another reference, the rays that the method traced itself, or the ratio of two others.
+struct StudyStatistic {
+    enum class Of { Mean, Least, Most, Percentile, ShareBelow, ShareAtLeast };
+    std::string name, title, definition;
+    bool higherIsBetter = false;
+    std::string tap;
+    std::string channel;  ///< of the tap; empty: its first
+    Of of = Of::Mean;     ///< over the tap's pixels that are finite
+    double value = 0;     ///< of Percentile, ShareBelow and ShareAtLeast
+    std::string metric;   ///< of the catalogue, against a reference of `referenceSpp`
+    int referenceSpp = 0;
+    std::string rays;     ///< camera, bounce, shadow or all: a pixel
+    std::string over, under;  ///< statistics before this one: `over` divided by `under`
 };
 
 /// Each stage of an entry switched off in turn.
@@ -91,12 +109,20 @@ struct StudyAblation {
 /// A claim that the numbers hold or not, on each scene or on average.
 struct StudyCheck {
     std::string title;  ///< in words; empty: made from the rest
+    std::string scene;  ///< where it is claimed; empty: on each
     std::string entry, metric;
     std::vector<std::string> against;  ///< entries whose value times `bound` is the limit; empty: `bound` is
+    std::string atEqual;  ///< not empty: those are one curve, taken where this quantity is the entry's
     double bound = 1;
     bool atLeast = false;  ///< else at most
     bool onAverage = false;
+
+    /// Is it about times, which differ from run to run?
+    bool timed() const;
 };
+
+/// Quantities of a check beside metrics and statistics: `frame_ms`, `run_ms` and `ns_per_ray`.
+bool isTimeQuantity(const std::string& id);
 
 /// An inset strip: one picture with its crops marked, and each crop as the methods show it.
 struct StudyFigure {
@@ -146,6 +172,7 @@ struct Study {
     StudyReference reference;
     std::vector<std::string> metrics;          ///< of images, as `list metrics` names them
     std::vector<std::string> temporalMetrics;  ///< of sequences
+    std::vector<StudyStatistic> statistics;
     MetricSettings metricSettings;             ///< for every metric, reference and figure
     std::optional<StudySweep> sweep;
     std::optional<StudyTuning> tuning;
@@ -157,6 +184,8 @@ struct Study {
     StudyPictures pictures;
 
     const StudyEntry* entry(const std::string& name) const;
+    const StudyStatistic* statistic(const std::string& name) const;
+    /// A metric or a statistic.
     bool measures(const std::string& metric) const;
 };
 

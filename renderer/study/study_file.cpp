@@ -65,7 +65,7 @@ std::vector<StudyScene> readScenes(const JsonTree& tree, const JsonValue& sectio
     return scenes;
 }
 
-StudyEntry readEntry(const JsonTree& tree, const JsonValue& item) {
+StudyEntry readEntry(const JsonTree& tree, const JsonValue& item, const Study& study) {
     ObjectReader reader(tree, item, "entry");
     StudyEntry entry;
     const JsonValue& module = reader.need("module");
@@ -79,6 +79,7 @@ StudyEntry readEntry(const JsonTree& tree, const JsonValue& item) {
     entry.set = readValues(tree, reader.find("set"), "set");
     entry.tune = readAxes(tree, reader.find("tune"), "tune");
     if (const JsonValue* spp = reader.find("spp")) entry.spp = readInts(tree, *spp, "spp", 1, 65536);
+    entry.known = readKnown(tree, reader.find("known"), study);
     reader.finish();
     for (const StudyValue& value : entry.set) checkModuleValue(entry.module, value);
     for (const StudyAxis& axis : entry.tune)
@@ -89,7 +90,7 @@ StudyEntry readEntry(const JsonTree& tree, const JsonValue& item) {
 void readEntries(const JsonTree& tree, const JsonValue& section, Study& study) {
     if (!section.isArray() || section.items.empty()) refuseValue(tree, section, "entries", "an array of entries");
     for (const JsonValue& item : section.items) {
-        StudyEntry entry = readEntry(tree, item);
+        StudyEntry entry = readEntry(tree, item, study);
         refuseTwin(tree, item, study.entries, entry.name, "entries");
         if (!entry.tune.empty() && !study.tuning)
             throwBadInput({fmt::format("\"{}\" is tuned, but nothing says on which frame", entry.name), tree.where(item.at),
@@ -141,6 +142,14 @@ void readTuning(const JsonTree& tree, const JsonValue* section, Study& study) {
     study.tuning = tuning;
 }
 
+/// One entry's name, or several.
+std::vector<std::string> readEntryNames(const JsonTree& tree, const JsonValue& value, const Study& study, const std::string& name) {
+    if (!value.isArray()) return {readEntryName(tree, value, study, name)};
+    std::vector<std::string> names = readTexts(tree, value, name);
+    for (const JsonValue& item : value.items) readEntryName(tree, item, study, name);
+    return names;
+}
+
 void readPairs(const JsonTree& tree, const JsonValue* section, Study& study) {
     if (!section) return;
     if (!section->isArray()) refuseValue(tree, *section, "pairs", "an array of pairs");
@@ -148,7 +157,7 @@ void readPairs(const JsonTree& tree, const JsonValue* section, Study& study) {
         ObjectReader reader(tree, item, "pair");
         StudyPair pair;
         pair.entry = readEntryName(tree, reader.need("entry"), study, "entry");
-        pair.against = readEntryName(tree, reader.need("against"), study, "against");
+        pair.against = readEntryNames(tree, reader.need("against"), study, "against");
         reader.finish();
         study.pairs.push_back(pair);
     }
@@ -203,6 +212,7 @@ void readBody(const JsonTree& tree, const JsonValue& merged, Study& study) {
     readReference(tree, top.find("reference"), study.reference);
     readMetrics(tree, top.find("metrics"), study);
     study.metricSettings = readMetricSettings(tree, top.find("metric-settings"));
+    study.statistics = readStatistics(tree, top.find("statistics"));
     readTuning(tree, top.find("tuning"), study);
     readEntries(tree, top.need("entries"), study);
     readSweep(tree, top.find("sweep"), study);
@@ -238,9 +248,19 @@ const StudyEntry* Study::entry(const std::string& wanted) const {
     return nullptr;
 }
 
-bool Study::measures(const std::string& metric) const {
-    return std::count(metrics.begin(), metrics.end(), metric) + std::count(temporalMetrics.begin(), temporalMetrics.end(), metric) > 0;
+const StudyStatistic* Study::statistic(const std::string& wanted) const {
+    for (const StudyStatistic& statistic : statistics)
+        if (statistic.name == wanted) return &statistic;
+    return nullptr;
 }
+
+bool Study::measures(const std::string& metric) const {
+    return std::count(metrics.begin(), metrics.end(), metric) + std::count(temporalMetrics.begin(), temporalMetrics.end(), metric) > 0 || statistic(metric);
+}
+
+bool isTimeQuantity(const std::string& id) { return id == "frame_ms" || id == "run_ms" || id == "ns_per_ray"; }
+
+bool StudyCheck::timed() const { return isTimeQuantity(metric) || isTimeQuantity(atEqual); }
 
 Study parseStudy(const std::string& text, const fs::path& path, const std::string& preset) {
     const JsonTree tree = parseJsonTree(text, path.string());

@@ -33,6 +33,10 @@ void readAblations(const JsonTree& tree, const JsonValue* section, Study& study)
 void readChecks(const JsonTree& tree, const JsonValue* section, Study& study);
 void readFigures(const JsonTree& tree, const JsonValue* section, Study& study);
 
+std::vector<StudyStatistic> readStatistics(const JsonTree& tree, const JsonValue* section);
+/// {"statistic": number}, of a study whose statistics are read.
+std::vector<std::pair<std::string, double>> readKnown(const JsonTree& tree, const JsonValue* section, const Study& study);
+
 MetricSettings readMetricSettings(const JsonTree& tree, const JsonValue* section);
 StudyFrames readFrames(const JsonTree& tree, const JsonValue* section);
 StudyIntervals readIntervals(const JsonTree& tree, const JsonValue* section);

@@ -60,14 +60,16 @@ int64_t readMeasuredFrame(const JsonTree& tree, const JsonValue& value, const St
     return frame;
 }
 
+std::string readSceneName(const JsonTree& tree, const JsonValue& value, const Study& study) {
+    const std::string scene = readText(tree, value, "scene");
+    std::vector<std::string> names;
+    for (const StudyScene& known : study.scenes) names.push_back(known.name);
+    if (std::find(names.begin(), names.end(), scene) == names.end()) refuseName(tree, value.at, "scene", scene, names);
+    return scene;
+}
+
 void readWhere(const JsonTree& tree, ObjectReader& reader, const Study& study, StudyFigure& figure) {
-    if (const JsonValue* scene = reader.find("scene")) {
-        figure.scene = readText(tree, *scene, "scene");
-        std::vector<std::string> names;
-        for (const StudyScene& known : study.scenes) names.push_back(known.name);
-        if (std::find(names.begin(), names.end(), figure.scene) == names.end())
-            refuseName(tree, scene->at, "scene", figure.scene, names);
-    }
+    if (const JsonValue* scene = reader.find("scene")) figure.scene = readSceneName(tree, *scene, study);
     if (const JsonValue* frame = reader.find("frame")) figure.frame = readMeasuredFrame(tree, *frame, study);
     figure.spp = reader.integer("spp", 1, 65536).value_or(0);
     if (const JsonValue* input = reader.find("input")) figure.input = readEntryName(tree, *input, study, "input");
@@ -99,6 +101,17 @@ std::string readUnsweptName(const JsonTree& tree, const JsonValue& value, const 
     const std::string entry = readEntryName(tree, value, study, name);
     if (isSwept(study, entry)) refuseValue(tree, value, name, "an entry that is not swept");
     return entry;
+}
+
+/// A metric or statistic of the study, or a time.
+std::string readQuantity(const JsonTree& tree, const JsonValue& value, const Study& study) {
+    const std::string id = readText(tree, value, "metric");
+    std::vector<std::string> known = study.metrics;
+    known.insert(known.end(), study.temporalMetrics.begin(), study.temporalMetrics.end());
+    for (const StudyStatistic& statistic : study.statistics) known.push_back(statistic.name);
+    for (const char* time : {"frame_ms", "run_ms", "ns_per_ray"}) known.emplace_back(time);
+    if (std::find(known.begin(), known.end(), id) == known.end()) refuseName(tree, value.at, "metric of the study", id, known);
+    return id;
 }
 
 }  // namespace
@@ -150,21 +163,24 @@ void readChecks(const JsonTree& tree, const JsonValue* section, Study& study) {
         ObjectReader reader(tree, item, "check");
         StudyCheck check;
         check.title = reader.text("title").value_or("");
+        if (const JsonValue* scene = reader.find("scene")) check.scene = readSceneName(tree, *scene, study);
         check.entry = readUnsweptName(tree, reader.need("entry"), study, "entry");
         const JsonValue& metric = reader.need("metric");
-        check.metric = readText(tree, metric, "metric");
-        std::vector<std::string> measured = study.metrics;
-        measured.insert(measured.end(), study.temporalMetrics.begin(), study.temporalMetrics.end());
-        if (!study.measures(check.metric)) refuseName(tree, metric.at, "metric of the study", check.metric, measured);
+        check.metric = readQuantity(tree, metric, study);
+        if (const JsonValue* equal = reader.find("at-equal")) check.atEqual = readQuantity(tree, *equal, study);
         if (const JsonValue* against = reader.find("against")) {
             readTexts(tree, *against, "against");
             for (const JsonValue& name : against->items) check.against.push_back(readUnsweptName(tree, name, study, "against"));
         }
+        if (!check.atEqual.empty() && check.against.empty()) refuseValue(tree, item, "at-equal", "entries under \"against\", which are the curve");
         const std::optional<double> most = reader.number("at-most", -1e9, 1e9), least = reader.number("at-least", -1e9, 1e9);
         if (most.has_value() == least.has_value()) refuseValue(tree, item, "check", "either \"at-most\" or \"at-least\"");
         check.atLeast = least.has_value();
         check.bound = most ? *most : *least;
+        const JsonValue* average = reader.find("on-average");
         check.onAverage = reader.toggle("on-average").value_or(false);
+        if (check.onAverage && (check.timed() || !check.atEqual.empty() || !check.scene.empty()))
+            refuseValue(tree, *average, "on-average", "false for what is about times, at equal cost, or on one scene");
         reader.finish();
         study.checks.push_back(std::move(check));
     }

@@ -59,7 +59,8 @@ Json entrySchema() {
                    {"module", text("Which method, as `lumiscope list modules` names it.")},
                    {"set", reference("values")},
                    {"tune", reference("axes")},
-                   {"spp", wholes(1, 65536, "Samples a pixel and frame, instead of the study's.")}},
+                   {"spp", wholes(1, 65536, "Samples a pixel and frame, instead of the study's.")},
+                   {"known", mapOf({{"type", "number"}}, "Statistics that are so by construction.")}},
                   "A method with parameters: ids of its module, or ids with a dot of the document.", {"module"});
 }
 
@@ -107,14 +108,38 @@ Json figuresSchema() {
 Json checksSchema() {
     Json bound = {{"type", "number"}, {"description", "Of the value, or of its ratio to each of those it is held against."}};
     return listOf(closed({{"title", text("The claim in words.")},
+                          {"scene", text("A scene of the study; by default each.")},
                           {"entry", text("An entry.")},
-                          {"metric", oneOfNames(metricIds(true), "A metric of the study.")},
+                          {"metric", text("A metric or statistic of the study, or a time: frame_ms, run_ms, ns_per_ray.")},
                           {"against", listOf(text("An entry's name."), "Entries whose value times the bound is the limit.")},
+                          {"at-equal", text("A quantity like \"metric\": those it is held against are one curve, taken where this is the entry's.")},
                           {"at-most", bound},
                           {"at-least", bound},
                           {"on-average", {{"type", "boolean"}, {"description", "Over all scenes together, instead of on each."}}}},
                          "A claim: at most or at least so much, or so many times another's value.", {"entry", "metric"}),
                   "Claims that the numbers hold or not; a study whose claims fail ends with exit code 1.", 0);
+}
+
+Json statisticsSchema() {
+    const Json number = {{"type", "number"}};
+    Json limit = closed({{"percentile", {{"type", "number"}, {"minimum", 0}, {"maximum", 100}}}, {"share-below", number}, {"share-at-least", number}},
+                        "One of them.");
+    limit["minProperties"] = limit["maxProperties"] = 1;
+    Json one = closed({{"name", text("What results call it.")},
+                       {"title", text("What tables call it; by default its name.")},
+                       {"higher-is-better", {{"type", "boolean"}}},
+                       {"tap", text("A buffer of the entries' modules; entries without it have no value.")},
+                       {"channel", text("Of the buffer; by default its first.")},
+                       {"of", {{"description", "What of the buffer's pixels."}, {"anyOf", {oneOfNames({"mean", "least", "most"}, "Over all."), std::move(limit)}}}},
+                       {"metric", oneOfNames(metricIds(false), "Against another reference.")},
+                       {"reference-spp", {{"type", "integer"}, {"minimum", 32}, {"maximum", 1 << 20}, {"multipleOf", 32}}},
+                       {"rays", oneOfNames({"camera", "bounce", "shadow", "all"}, "Rays a pixel that the method traced itself.")},
+                       {"over", text("A statistic before this one, divided by")},
+                       {"under", text("another.")}},
+                      "A number of every measured frame.", {"name"});
+    const auto needs = [](const char* kind, const char* other) { return Json{{"required", other ? Json{kind, other} : Json{kind}}}; };
+    one["oneOf"] = {needs("tap", "of"), needs("metric", "reference-spp"), needs("rays", nullptr), needs("over", "under")};
+    return listOf(std::move(one), "Numbers beside the metrics: of buffers, of rays, of other references.", 0);
 }
 
 /// What a preset may change.
@@ -134,6 +159,7 @@ Json bodySchema() {
                                {"set", reference("values")}},
                               "What images are compared with.");
     all["metrics"] = listOf(oneOfNames(metricIds(true), "As `lumiscope list metrics` names them."), "What is measured.");
+    all["statistics"] = statisticsSchema();
     const Json stops = {{"type", "number"}, {"minimum", -100}, {"maximum", 100}};
     Json exposures = listOf(stops, "Start and stop in EV, and how many; by default what the reference says.", 2);
     exposures["prefixItems"] = {stops, stops, whole(2, 64, "How many exposures.")};
@@ -147,8 +173,9 @@ Json bodySchema() {
                             {"metric", oneOfNames(metricIds(false), "What the best has best.")},
                             {"seed", whole(0, kReferenceSeed - 1, "Random numbers of the tuning frames.")}},
                            "How values under an entry's \"tune\" are chosen, for each scene.", {"frame"});
-    all["pairs"] = listOf(closed({{"entry", text("An entry.")}, {"against", text("The entry it is held against.")}}, "A pair.",
-                                 {"entry", "against"}),
+    const Json others = {{"description", "The entry it is held against, or several that are one method at several costs."},
+                         {"anyOf", {text("An entry's name."), listOf(text("An entry's name."), "Entries.")}}};
+    all["pairs"] = listOf(closed({{"entry", text("An entry.")}, {"against", others}}, "A pair.", {"entry", "against"}),
                           "Equal time, equal error and equivalent samples between entries.", 0);
     all["ablations"] = ablationsSchema();
     all["figures"] = figuresSchema();

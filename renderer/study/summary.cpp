@@ -47,7 +47,7 @@ void addRankings(const Study& study, const StudyPlan& plan, const StudyRowIndex&
                     values.push_back(std::move(own));
                 }
                 if (methods.size() < 2) continue;
-                const bool higher = higherIsBetter(metric);
+                const bool higher = higherIsBetter(study, metric);
                 const std::vector<Rank> ranks = rankMethods(values, higher, study.intervals.level, intervalMethod(study));
                 std::vector<size_t> order(methods.size());
                 for (size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -69,7 +69,7 @@ void addSlopes(const Study& study, const StudyPlan& plan, const StudyRowIndex& r
     for (const size_t scene : rows.scenes())
         for (size_t method = 0; method < plan.methods.size(); ++method)
             for (const std::string& metric : study.metrics) {
-                if (scene == kAllScenes || higherIsBetter(metric)) continue;
+                if (scene == kAllScenes || higherIsBetter(study, metric)) continue;
                 std::vector<double> slopes;
                 for (const SeedCurve& curve : seedCurves(study, rows, scene, method, metric))
                     slopes.push_back(curve.spp.size() > 2 ? logLogSlope(curve.spp, curve.value) : kNaN);
@@ -95,7 +95,7 @@ void addEquivalents(const Study& study, const StudyPlan& plan, const StudyRowInd
                 for (const size_t scene : rows.scenes())
                     for (const std::string& metric : study.metrics) {
                         if (study.entries[plan.methods[method].entry].name != pair.entry ||
-                            study.entries[plan.methods[other].entry].name != pair.against || scene == kAllScenes ||
+                            pair.against.size() != 1 || study.entries[plan.methods[other].entry].name != pair.against[0] || scene == kAllScenes ||
                             plan.methods[method].whole || plan.methods[other].whole ||
                             !isSquaredError(metric))
                             continue;

@@ -41,8 +41,12 @@ std::vector<StudyMeanTime> meanTimes(const Study& study, const StudyRecords& rec
             });
         for (const int seed : study.seeds) {
             const auto own = std::find_if(times.begin(), times.end(), [&](const StudyTime* time) { return time->seed == seed; });
-            mean.frameMsBySeed.push_back(own == times.end() ? kNaN : (*own)->frameMs());
+            const StudyTime* time = own == times.end() ? nullptr : *own;
+            mean.frameMsBySeed.push_back(time ? time->frameMs() : kNaN);
+            mean.runMsBySeed.push_back(time ? time->runMs : kNaN);
+            mean.nsPerRayBySeed.push_back(time && time->raysPerFrame > 0 ? 1e6 * (time->traceMs + time->runMs) / time->raysPerFrame : kNaN);
         }
+        mean.nsPerRay = meanInterval(mean.nsPerRayBySeed, study.intervals.level);
         means.push_back(std::move(mean));
     }
     return means;
@@ -73,16 +77,25 @@ SeedEqual equalOf(const TimeCurve& other, double ms, double value, bool higher) 
     return {logLogAt(other.ms, other.value, ms), logLogAt(other.value, other.ms, value, higher ? Course::Rising : Course::Falling)};
 }
 
-void addPair(const Study& study, const StudyRowIndex& rows, const StudyMeanTime& time, size_t other, const std::string& metric,
-             StudyTimes& times) {
+/// `others`: one method, or several that are one at several costs.
+void addPair(const Study& study, const StudyPlan& plan, const StudyRowIndex& rows, const StudyMeanTime& time, const std::vector<size_t>& others,
+             const std::string& metric, StudyTimes& times) {
     const std::vector<SeedCurve> own = seedCurves(study, rows, time.scene, time.method, metric);
-    const std::vector<SeedCurve> against = seedCurves(study, rows, time.scene, other, metric);
+    const auto curveOf = [&](size_t seed) {
+        TimeCurve all;
+        for (const size_t other : others) {
+            const TimeCurve part = timeCurve(times, seedCurves(study, rows, time.scene, other, metric)[seed], time.scene, other, seed);
+            all.ms.insert(all.ms.end(), part.ms.begin(), part.ms.end());
+            all.value.insert(all.value.end(), part.value.begin(), part.value.end());
+        }
+        return all;
+    };
     std::vector<double> values, atTime, differences, otherMs, ratios;
     for (size_t seed = 0; seed < study.seeds.size(); ++seed) {
         const auto point = std::find(own[seed].spp.begin(), own[seed].spp.end(), time.spp);
         if (point == own[seed].spp.end()) continue;
         const double value = own[seed].value[static_cast<size_t>(point - own[seed].spp.begin())], ms = time.frameMsBySeed[seed];
-        const SeedEqual equal = equalOf(timeCurve(times, against[seed], time.scene, other, seed), ms, value, higherIsBetter(metric));
+        const SeedEqual equal = equalOf(curveOf(seed), ms, value, higherIsBetter(study, metric));
         values.push_back(value);
         atTime.push_back(equal.otherAtTime);
         differences.push_back(value - equal.otherAtTime);
@@ -93,19 +106,25 @@ void addPair(const Study& study, const StudyRowIndex& rows, const StudyMeanTime&
     const auto interval = [&](const std::vector<double>& list) {
         return meanInterval(list, study.intervals.level, intervalMethod(study));
     };
-    times.pairs.push_back({time.scene, time.method, other, time.spp, metric, time.frameMs, interval(values), interval(atTime),
+    std::string names;
+    for (const size_t other : others) names += (names.empty() ? "" : ", ") + plan.methods[other].name;
+    times.pairs.push_back({time.scene, time.method, names, time.spp, metric, time.frameMs, interval(values), interval(atTime),
                            interval(differences), interval(otherMs), interval(ratios)});
 }
 
 void addPairs(const Study& study, const StudyPlan& plan, const StudyRowIndex& rows, StudyTimes& times) {
     for (const StudyPair& pair : study.pairs)
-        for (const StudyMeanTime& time : times.methods)
+        for (const StudyMeanTime& time : times.methods) {
+            if (study.entries[plan.methods[time.method].entry].name != pair.entry || plan.methods[time.method].whole) continue;
+            std::vector<std::vector<size_t>> curves(pair.against.size() > 1 ? 1 : 0);
             for (size_t other = 0; other < plan.methods.size(); ++other) {
-                if (study.entries[plan.methods[time.method].entry].name != pair.entry || plan.methods[time.method].whole ||
-                    study.entries[plan.methods[other].entry].name != pair.against || plan.methods[other].whole)
-                    continue;
-                for (const std::string& metric : allMetrics(study)) addPair(study, rows, time, other, metric, times);
+                if (!std::count(pair.against.begin(), pair.against.end(), study.entries[plan.methods[other].entry].name) || plan.methods[other].whole) continue;
+                if (pair.against.size() > 1) curves[0].push_back(other);
+                else curves.push_back({other});
             }
+            for (const std::vector<size_t>& others : curves)
+                for (const std::string& metric : allMetrics(study)) addPair(study, plan, rows, time, others, metric, times);
+        }
 }
 
 void addStages(const Study& study, const StudyPlan& plan, StudyTimes& times) {
@@ -120,6 +139,10 @@ void addStages(const Study& study, const StudyPlan& plan, StudyTimes& times) {
 }
 
 }  // namespace
+
+const std::vector<double>& StudyMeanTime::bySeed(const std::string& quantity) const {
+    return quantity == "frame_ms" ? frameMsBySeed : quantity == "run_ms" ? runMsBySeed : nsPerRayBySeed;
+}
 
 const StudyMeanTime* StudyTimes::find(size_t scene, size_t method, int spp) const {
     for (const StudyMeanTime& time : methods)

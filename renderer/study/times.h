@@ -14,13 +14,19 @@ struct StudyMeanTime {
     Interval frameMs, poseMs, traceMs, runMs, raysPerFrame;
     std::map<std::string, Interval> stagesMs;  ///< of run()
     std::vector<double> frameMsBySeed;         ///< in the study's order; NaN where the seed did not run
+    std::vector<double> runMsBySeed, nsPerRayBySeed;  ///< the same; of a frame without posing, and of that over its rays
+    Interval nsPerRay;
+
+    /// By a time quantity's id (isTimeQuantity()).
+    const std::vector<double>& bySeed(const std::string& quantity) const;
 };
 
 /// What the other of a pair reaches in a method's time, and how long it takes to reach its value; by straight lines between
 /// the other's sample counts, in log-log space, between the largest ones that enclose it. Of seeds where the other's sample counts do not reach so far nothing is
 /// known; the counts say how many those are.
 struct StudyEqual {
-    size_t scene = 0, method = 0, against = 0;
+    size_t scene = 0, method = 0;
+    std::string against;  ///< a method's name, or those of a pair's entries
     int spp = 1;
     std::string metric;
     Interval ms, value;

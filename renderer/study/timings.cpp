@@ -17,6 +17,7 @@ Json rowJson(const Study& study, const StudyPlan& plan, const StudyMeanTime& tim
     row["trace_ms"] = intervalJson(time.traceMs);
     row["run_ms"] = intervalJson(time.runMs);
     row["rays_per_frame"] = intervalJson(time.raysPerFrame);
+    row["ns_per_ray"] = intervalJson(time.nsPerRay);
     row["stages_ms"] = Json::object();
     for (const auto& [stage, ms] : time.stagesMs) row["stages_ms"][stage] = intervalJson(ms);
     return row;
@@ -24,7 +25,7 @@ Json rowJson(const Study& study, const StudyPlan& plan, const StudyMeanTime& tim
 
 Json pairJson(const Study& study, const StudyPlan& plan, const StudyEqual& equal) {
     Json pair = headJson(study, plan, equal.scene, equal.method, equal.spp);
-    pair["against"] = plan.methods[equal.against].name;
+    pair["against"] = equal.against;
     pair["metric"] = equal.metric;
     pair["frame_ms"] = intervalJson(equal.ms);
     pair["value"] = intervalJson(equal.value);
@@ -37,7 +38,7 @@ Json pairJson(const Study& study, const StudyPlan& plan, const StudyEqual& equal
 
 }  // namespace
 
-Json timingsJson(const Study& study, const StudyPlan& plan, const StudyTimes& times) {
+Json timingsJson(const Study& study, const StudyPlan& plan, const StudyTimes& times, const std::vector<StudyCheckResult>& checks) {
     Json all = {{"rows", Json::array()}, {"pairs", Json::array()}, {"ablations", Json::array()}};
     for (const StudyMeanTime& time : times.methods) all["rows"].push_back(rowJson(study, plan, time));
     for (const StudyEqual& equal : times.pairs) all["pairs"].push_back(pairJson(study, plan, equal));
@@ -49,6 +50,7 @@ Json timingsJson(const Study& study, const StudyPlan& plan, const StudyTimes& ti
         entry["difference_ms"] = intervalJson(stage.differenceMs);
         all["ablations"].push_back(std::move(entry));
     }
+    if (!study.checks.empty()) all["checks"] = checksJson(study, checks, true);
     return all;
 }
 

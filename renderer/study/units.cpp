@@ -85,10 +85,12 @@ double finiteMean(const std::vector<double>& values) {
 std::vector<std::string> allMetrics(const Study& study) {
     std::vector<std::string> metrics = study.metrics;
     metrics.insert(metrics.end(), study.temporalMetrics.begin(), study.temporalMetrics.end());
+    for (const StudyStatistic& statistic : study.statistics) metrics.push_back(statistic.name);
     return metrics;
 }
 
 std::string definitionOf(const Study& study, const std::string& metric) {
+    if (const StudyStatistic* statistic = study.statistic(metric)) return statistic->definition;
     const TemporalMetric* temporal = findTemporalMetric(metric);
     std::string text = temporal ? temporal->definition : findMetric(metric).definition;
     if (metric == "relmse") text += fmt::format(" Here epsilon is {:g}.", study.metricSettings.relMseEpsilon);
@@ -98,12 +100,16 @@ std::string definitionOf(const Study& study, const std::string& metric) {
     return text;
 }
 
-std::string titleOf(const std::string& metric) {
+std::string titleOf(const Study& study, const std::string& metric) {
+    if (const StudyStatistic* statistic = study.statistic(metric)) return statistic->title;
+    if (isTimeQuantity(metric)) return metric == "frame_ms" ? "ms a frame" : metric == "run_ms" ? "ms of the method" : "ns a ray";
     const TemporalMetric* temporal = findTemporalMetric(metric);
     return temporal ? temporal->title : findMetric(metric).title;
 }
 
-bool higherIsBetter(const std::string& metric) {
+bool higherIsBetter(const Study& study, const std::string& metric) {
+    if (const StudyStatistic* statistic = study.statistic(metric)) return statistic->higherIsBetter;
+    if (isTimeQuantity(metric)) return false;
     return !findTemporalMetric(metric) && findMetric(metric).higherIsBetter;
 }
 

@@ -40,12 +40,13 @@ std::vector<double> unitValues(const Study& study, const StudyRowIndex& rows, si
 int64_t countMissing(const std::vector<double>& values);
 double finiteMean(const std::vector<double>& values);
 
-/// Images' metrics, then those of sequences.
+/// Images' metrics, those of sequences, and the statistics.
 std::vector<std::string> allMetrics(const Study& study);
 /// A metric's definition, with what the study tells it.
 std::string definitionOf(const Study& study, const std::string& metric);
-std::string titleOf(const std::string& metric);
-bool higherIsBetter(const std::string& metric);
+/// Of a metric, a statistic or a time quantity.
+std::string titleOf(const Study& study, const std::string& metric);
+bool higherIsBetter(const Study& study, const std::string& metric);
 IntervalMethod intervalMethod(const Study& study);
 
 }  // namespace lumi

@@ -107,7 +107,7 @@ TEST(Latex, EveryTableIsSound) {
             EXPECT_EQ(cellsOf(table.text.substr(at, stop - at)), expected) << table.name << ": " << table.text.substr(at, stop - at);
         EXPECT_GT(rows, 1u) << table.name;
     }
-    EXPECT_EQ(names, (std::vector<std::string>{"results-cornell", "results-a-b", "results-all-scenes", "equal-cornell", "equal-a-b",
+    EXPECT_EQ(names, (std::vector<std::string>{"results-cornell", "results-a-b", "results-all-scenes", "times-cornell", "times-a-b", "equal-cornell", "equal-a-b",
                                                "ablation-cornell", "ablation-a-b", "ablation-all-scenes", "metrics"}));
     const std::string document = latexDocument(sample.study, {}, tables);
     expectSound(document, "all.tex");

@@ -179,7 +179,7 @@ TEST(Results, ClaimsHoldOrNotOrNobodyKnows) {
         StudyCheck check;
         check.entry = entry, check.metric = metric, check.against = against, check.bound = bound, check.atLeast = atLeast;
         s.study.checks = {check};
-        return checkClaims(s.study, s.plan, s.records);
+        return checkClaims(s.study, s.plan, s.records, {});
     };
     using Verdict = StudyCheckResult::Verdict;
     const std::string b = s.study.entries[1].name;
@@ -200,7 +200,7 @@ TEST(Results, ClaimsHoldOrNotOrNobodyKnows) {
     EXPECT_EQ(claim("a", "mse", {}, 1.1)[0].verdict, Verdict::Holds) << "a bound of its own";
     EXPECT_EQ(claim("a", "mse", {}, 0.9)[0].verdict, Verdict::Fails);
     s.study.checks[0].onAverage = true;
-    EXPECT_EQ(checkClaims(s.study, s.plan, s.records).size(), 3u);
+    EXPECT_EQ(checkClaims(s.study, s.plan, s.records, {}).size(), 3u);
     for (StudyRow& row : s.records.rows) row.corrected.clear(), row.metrics["mse"] = NAN;
     EXPECT_EQ(claim("a", "mse", {b}, 2)[0].verdict, Verdict::Unknown) << "no value holds nothing";
 }
@@ -213,12 +213,12 @@ TEST(Results, AClaimAgainstWhatDidNotRunIsUnknown) {
     check.entry = "a", check.metric = "mse", check.against = {s.study.entries[1].name}, check.bound = 5;
     s.study.checks = {check};
     std::erase_if(s.records.rows, [](const StudyRow& row) { return row.method == 1 && row.spp == 4; });
-    const std::vector<StudyCheckResult> results = checkClaims(s.study, s.plan, s.records);
+    const std::vector<StudyCheckResult> results = checkClaims(s.study, s.plan, s.records, {});
     ASSERT_EQ(results.size(), 2u * 3);
     for (const StudyCheckResult& result : results)
         EXPECT_EQ(result.verdict, result.spp == 4 ? StudyCheckResult::Verdict::Unknown : StudyCheckResult::Verdict::Holds);
     s.study.checks[0].metric = "flip";
-    for (const StudyCheckResult& result : checkClaims(s.study, s.plan, s.records)) EXPECT_FALSE(result.asClaimed()) << "nothing was judged";
+    for (const StudyCheckResult& result : checkClaims(s.study, s.plan, s.records, {})) EXPECT_FALSE(result.asClaimed()) << "nothing was judged";
 }
 
 TEST(Results, JsonHoldsNoNumberThatJsonCannot) {

@@ -40,11 +40,13 @@ TEST(StudyFile, EverythingIsRead) {
       "spp": [1, 4], "seeds": [7, 8], "reference": {"spp": 64, "set": {"path.max-depth": 9}},
       "metrics": ["ssim", "mse", "lag"], "tuning": {"frame": 8, "metric": "mse", "seed": 5},
       "entries": [{"name": "a", "module": "accumulate", "set": {"limit": true, "path.clamp": false}, "tune": {"max-samples": [2, 4]}},
-                  {"module": "none", "spp": 2}, {"name": "b", "module": "none"}],
+                  {"module": "none", "spp": 2}, {"name": "b", "module": "none", "known": {"far": 3}}],
       "sweep": {"axes": {"component": ["direct", "indirect"]}, "entries": ["none"]},
       "checks": [{"title": "C", "entry": "a", "metric": "mse", "against": ["b"], "at-most": 1.03, "on-average": true}],
       "metric-settings": {"relmse-epsilon": 0.01, "hdr-flip-exposures": [-2, 3]},
-      "pairs": [{"entry": "a", "against": "none"}],
+      "pairs": [{"entry": "a", "against": "none"}, {"entry": "a", "against": ["none", "b"]}],
+      "statistics": [{"name": "far", "tap": "samples", "of": {"percentile": 99}}, {"name": "rough", "metric": "relmse", "reference-spp": 64},
+                     {"name": "rays", "title": "Rays", "rays": "camera"}, {"name": "each", "over": "rays", "under": "far"}],
       "ablations": [{"entry": "a", "stages": [{"name": "limit", "set": {"limit": false}}]}],
       "figures": [{"name": "f", "scene": "night", "frame": 63, "spp": 4, "input": "none", "entries": ["a"], "metric": "mse",
                    "crops": [{"name": "c", "box": [0.1, 0.2, 0.3, 0.4]}, {"box": [0, 0, 1, 1]}]}],
@@ -63,6 +65,15 @@ TEST(StudyFile, EverythingIsRead) {
     EXPECT_EQ(study.checks.at(0).bound, 1.03);
     EXPECT_EQ(study.checks.at(0).against, std::vector<std::string>{"b"});
     EXPECT_TRUE(study.checks.at(0).onAverage && !study.checks.at(0).atLeast);
+    EXPECT_EQ(study.pairs.at(1).against, (std::vector<std::string>{"none", "b"}));
+    ASSERT_EQ(study.statistics.size(), 4u);
+    EXPECT_EQ(study.statistics[0].of, StudyStatistic::Of::Percentile);
+    EXPECT_EQ(study.statistics[0].value, 99);
+    EXPECT_EQ(study.statistics[1].referenceSpp, 64);
+    EXPECT_EQ(study.statistics[2].title, "Rays");
+    EXPECT_EQ(study.statistics[3].under, "far");
+    EXPECT_EQ(study.entries[2].known.at(0), std::pair(std::string("far"), 3.0));
+    EXPECT_TRUE(study.measures("each") && !study.measures("nothing"));
     EXPECT_EQ(study.metricSettings.relMseEpsilon, 0.01);
     EXPECT_EQ(*study.metricSettings.flipExposures, FlipExposures::over(-2, 3));
     EXPECT_EQ(study.frames.step->frame, 20);
