@@ -57,6 +57,7 @@ bool atrousLevel(const SurfaceGuide& guide, const AtrousSettings& settings, int 
     AtrousRow shared;
     shared.guide = guideRow(guide, settings.edges);
     shared.step = step;
+    shared.variancePrefilter = settings.variancePrefilter;
     shared.components = static_cast<int>(in.size());
     for (size_t c = 0; c < in.size(); ++c) {
         out[c]->reset({guide.width, guide.height});
@@ -71,15 +72,8 @@ bool atrousLevel(const SurfaceGuide& guide, const AtrousSettings& settings, int 
     }
     parallelRanges(guide.height, kRows, [&](int64_t begin, int64_t end) {
         AtrousRow row = shared;
-        std::vector<float> scales(static_cast<size_t>(guide.width) * in.size());
         for (int64_t i = begin; i < end; ++i) {
-            const int y = row.guide.y = rowInStride(i, guide.height, step);
-            for (size_t c = 0; c < in.size(); ++c) {
-                float* scale = scales.data() + c * static_cast<size_t>(guide.width);
-                kernels.luminanceScaleRow(in[c]->sampleVariance.data(), guide.width, guide.height, y,
-                                          settings.edges.sigmaLuminance, settings.variancePrefilter, scale);
-                row.luminanceScale[c] = scale;
-            }
+            row.guide.y = rowInStride(i, guide.height, step);
             kernels.filterRow(row);
         }
     }, stop);

@@ -1,7 +1,5 @@
 #include "filter/atrous_kernels.h"
 
-#include <cmath>
-
 #include "filter/atrous_taps.h"
 #include "filter/edge_stopping_lanes.h"
 
@@ -16,11 +14,35 @@ struct Component {
     Lanes weight, r, g, b, variance;
 };
 
-template <class Span>
-LUMI_LANES void start(const IlluminationView& in, const float* scale, std::ptrdiff_t at, int x, const Span& span, Component& c) {
+/// g3x3(Var) of eq. 5 for the pixels from column x on; borders repeat.
+template <bool Edge>
+LUMI_LANES Lanes steeringVariance(const AtrousRow& row, const float* variance, std::ptrdiff_t at, int x) {
+    const GuideRow& guide = row.guide;
+    const Span<Edge> here = spanOf<Edge>(x, 0, guide.width);
+    const float* line = variance + at;
+    if (!row.variancePrefilter) return here.load(line);
+    const std::ptrdiff_t above = guide.y > 0 ? -guide.width : 0, below = guide.y + 1 < guide.height ? guide.width : 0;
+    const auto column = [&](const Span<Edge>& span, int i) [[gnu::always_inline]] {
+        return mulAdd(lanes(2.0f), span.load(line + i), span.load(line + above + i) + span.load(line + below + i));
+    };
+    const Lanes centre = column(here, 0);
+    Lanes sides = column(spanOf<Edge>(x, -1, guide.width), -1) + column(spanOf<Edge>(x, 1, guide.width), 1);
+    if constexpr (Edge) {
+        const int last = guide.width - 1 - x;
+        if (x == 0) sides = sides + column({laneMask(0, 1)}, 0);
+        if (last < kLanes) sides = sides + column({laneMask(last, last + 1)}, 0);
+    }
+    return mulAdd(lanes(2.0f), centre, sides) * lanes(1.0f / 16);
+}
+
+template <bool Edge>
+LUMI_LANES void start(const AtrousRow& row, int component, std::ptrdiff_t at, int x, Component& c) {
+    const IlluminationView& in = row.in[component];
+    const Span<Edge> span = spanOf<Edge>(x, 0, row.guide.width);
     const Lanes h = lanes(kSpline[2] * kSpline[2]);  // the pixel itself: w(p, p) = 1
+    const Lanes variance = steeringVariance<Edge>(row, in.sampleVariance, at, x) + lanes(kVarianceEpsilon);
     c.luminance = span.load(in.luminance + at);
-    c.scale = span.load(scale + x);
+    c.scale = atLeast(roughInverseRoot(variance) * lanes(kLog2E / row.guide.edges.sigmaLuminance), lanes(0.0f));
     c.weight = h;
     c.r = h * span.load(in.rgb[0] + at);
     c.g = h * span.load(in.rgb[1] + at);
@@ -52,8 +74,8 @@ LUMI_LANES void add(const AtrousRow& row, const std::array<LaneTap<Edge>, Taps>&
         }
 }
 
-template <class Span>
-LUMI_LANES void finish(const IlluminationOutput& out, std::ptrdiff_t at, const Span& span, const Component& c) {
+template <bool Edge>
+LUMI_LANES void finish(const IlluminationOutput& out, std::ptrdiff_t at, const Span<Edge>& span, const Component& c) {
     const Lanes inverse = lanes(1.0f) / c.weight;
     const Lanes r = c.r * inverse, g = c.g * inverse, b = c.b * inverse;
     span.store(out.rgb[0] + at, r);
@@ -67,13 +89,12 @@ LUMI_LANES void finish(const IlluminationOutput& out, std::ptrdiff_t at, const S
 template <int Components, bool Usual, bool Edge>
 LUMI_LANES void filterLanes(const AtrousRow& row, const TapPairs<2>& taps, int x) {
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row.guide.y) * row.guide.width + x;
-    const Span<Edge> here = spanOf<Edge>(x, 0, row.guide.width);
     Component components[Components];
-    for (int c = 0; c < Components; ++c) start(row.in[c], row.luminanceScale[c], at, x, here, components[c]);
+    for (int c = 0; c < Components; ++c) start<Edge>(row, c, at, x, components[c]);
     const EdgeStop<Usual, Edge> edges(row.guide, x);
     for (int i = 0; i < taps.count; ++i)
         edges.forPair(taps.pairs[i], [&](const auto& pair) [[gnu::always_inline]] { add(row, pair, components); });
-    for (int c = 0; c < Components; ++c) finish(row.out[c], at, here, components[c]);
+    for (int c = 0; c < Components; ++c) finish(row.out[c], at, spanOf<Edge>(x, 0, row.guide.width), components[c]);
 }
 
 template <int Components, bool Usual>
@@ -89,23 +110,6 @@ void filterRow(const AtrousRow& row) {
     usual ? filterLoop<2, true>(row) : filterLoop<2, false>(row);
 }
 
-void luminanceScaleRow(const float* variance, int width, int height, int y, float sigmaLuminance, bool prefilter,
-                       float* __restrict scale) {
-    const float* __restrict at = variance + static_cast<std::ptrdiff_t>(y) * width;
-    if (!prefilter) {
-        for (int x = 0; x < width; ++x) scale[x] = at[x];
-    } else {
-        const float* __restrict above = at - (y > 0 ? width : 0);
-        const float* __restrict below = at + (y + 1 < height ? width : 0);
-        const auto column = [&](int x) { return above[x] + 2.0f * at[x] + below[x]; };
-        for (int x = 1; x + 1 < width; ++x) scale[x] = (column(x - 1) + 2.0f * column(x) + column(x + 1)) * (1.0f / 16);
-        const int end = width - 1;
-        scale[0] = (3.0f * column(0) + column(end < 1 ? end : 1)) * (1.0f / 16);
-        if (end > 0) scale[end] = (column(end - 1) + 3.0f * column(end)) * (1.0f / 16);
-    }
-    for (int x = 0; x < width; ++x) scale[x] = kLog2E / (sigmaLuminance * std::sqrt(scale[x] + kVarianceEpsilon) + 1e-30f);
-}
-
 void luminanceRow(const float* const rgb[3], float* __restrict out, int width) {
     const float* __restrict r = rgb[0];
     const float* __restrict g = rgb[1];
@@ -116,7 +120,7 @@ void luminanceRow(const float* const rgb[3], float* __restrict out, int width) {
 }  // namespace
 
 const AtrousKernels& atrousTable() {
-    static const AtrousKernels table{filterRow, luminanceScaleRow, luminanceRow};
+    static const AtrousKernels table{filterRow, luminanceRow};
     return table;
 }
 

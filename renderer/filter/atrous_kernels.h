@@ -21,20 +21,15 @@ struct AtrousRow {
     static constexpr int kMaxComponents = 2;
     GuideRow guide;
     int step = 1;  ///< pixels between the kernel's taps, 2^level
+    bool variancePrefilter = true;  ///< the 3x3 Gaussian of eq. 5
     int components = 1;
     IlluminationView in[kMaxComponents];
-    /// log2(e) / (sigma_l sqrt(g3x3(Var) + epsilon)) of the row's pixels, one array a component.
-    const float* luminanceScale[kMaxComponents] = {nullptr, nullptr};
     IlluminationOutput out[kMaxComponents];
 };
 
 struct AtrousKernels {
     /// Eq. 1 and the variance of its result, with the weights of eqs. 2 to 5 [Schied17].
     void (*filterRow)(const AtrousRow& row);
-    /// `scale[x]` = log2(e) / (sigmaLuminance sqrt(v + epsilon)), v = the variance at (x, y), blurred by the 3x3
-    /// Gaussian (borders repeat) if `prefilter`.
-    void (*luminanceScaleRow)(const float* variance, int width, int height, int y, float sigmaLuminance, bool prefilter,
-                              float* scale);
     /// Rec. 709 luminance of a row.
     void (*luminanceRow)(const float* const rgb[3], float* out, int width);
 };

@@ -40,28 +40,28 @@ struct TapPairs {
     }
 };
 
-/// Those of a register's pixels, or of their neighbours, that lie in the image's columns; all of them, where Edge is false.
+/// Those of a register's pixels, or of their neighbours, that lie in the image's columns.
 template <bool Edge>
 struct Span {
-    int from = 0, to = kLanes;
-
-    LUMI_LANES Lanes load(const float* p) const {
-        if constexpr (Edge) return loadPart(p, from, to);
-        return loadLanes(p);
-    }
-    LUMI_LANES void store(float* p, Lanes v) const {
-        if constexpr (Edge) return storePart(p, from, to, v);
-        storeLanes(p, v);
-    }
+    LaneMask mask;
+    LUMI_LANES Lanes load(const float* p) const { return loadPart(p, mask); }
+    LUMI_LANES void store(float* p, Lanes v) const { storePart(p, mask, v); }
+};
+/// All of them.
+template <>
+struct Span<false> {
+    LUMI_LANES Lanes load(const float* p) const { return loadLanes(p); }
+    LUMI_LANES void store(float* p, Lanes v) const { storeLanes(p, v); }
 };
 
 /// Of the pixels from column x on, dx to the right.
 template <bool Edge>
 LUMI_LANES Span<Edge> spanOf(int x, int dx, int width) {
     if constexpr (!Edge) return {};
-    const int left = -(x + dx), right = width - (x + dx);
-    const int from = left > 0 ? (left < kLanes ? left : kLanes) : 0, to = right < kLanes ? right : kLanes;
-    return {from, to > from ? to : from};
+    else {
+        const int left = -(x + dx), right = width - (x + dx);
+        return {laneMask(left > 0 ? (left < kLanes ? left : kLanes) : 0, right < kLanes ? right : kLanes)};
+    }
 }
 
 /// A tap of the pixels of a register.

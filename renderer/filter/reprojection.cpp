@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "filter/reprojection_kernels.h"
+#include "filter/whole_pixel.h"
 
 namespace lumi {
 
@@ -40,22 +41,29 @@ void SurfaceRecord::copyRows(const Signals& signals, int begin, int end) {
     copy(signals.ids(Signal::ObjectId).plane(0), objectId.plane(0));
 }
 
-void SurfaceRecord::copyFrom(const Signals& signals) {
-    reset(signals.extent());
-    copyRows(signals, 0, signals.extent().height);
-}
-
-void ReprojectedRow::resize(int width) {
+ReprojectedRow::ReprojectedRow(int pixels) {
     for (int k = 0; k < 4; ++k) {
-        index[k].resize(static_cast<size_t>(width));
-        refusals[k].resize(static_cast<size_t>(width));
-        weight[k].resize(static_cast<size_t>(width));
+        index[k].resize(static_cast<size_t>(pixels));
+        refusals[k].resize(static_cast<size_t>(pixels));
+        weight[k].resize(static_cast<size_t>(pixels));
     }
 }
 
-bool ReprojectedRow::lost(int x) const {
-    const auto at = static_cast<size_t>(x);
+bool ReprojectedRow::lost(int k) const {
+    const auto at = static_cast<size_t>(k);
     return refusals[0][at] != 0 && refusals[1][at] != 0 && refusals[2][at] != 0 && refusals[3][at] != 0;
+}
+
+ReprojectedTaps ReprojectedRow::pixel(int k) const {
+    ReprojectedTaps taps;
+    const auto at = static_cast<size_t>(k);
+    for (size_t t = 0; t < 4; ++t) {
+        taps.refusals[t] = static_cast<uint8_t>(refusals[t][at]);
+        if (refusals[t][at] != kTapKept) continue;
+        taps.index[static_cast<size_t>(taps.count)] = index[t][at];
+        taps.weight[static_cast<size_t>(taps.count++)] = weight[t][at];
+    }
+    return taps;
 }
 
 Reprojection::Reprojection(const Signals& signals, const SurfaceRecord& previous, const ReprojectionSettings& settings)
@@ -64,7 +72,7 @@ Reprojection::Reprojection(const Signals& signals, const SurfaceRecord& previous
       settings_(settings),
       normalCosine_(std::cos(radians(settings.normalToleranceDeg)) - 1e-5f) {}
 
-void Reprojection::tapRange(int y, int begin, int end, int32_t* const index[4], float* const weight[4],
+int Reprojection::tapRange(int y, int begin, int end, int32_t* const index[4], float* const weight[4],
                             int32_t* const refusals[4]) const {
     ReprojectionRow row;
     row.width = signals_.extent().width;
@@ -89,12 +97,10 @@ void Reprojection::tapRange(int y, int begin, int end, int32_t* const index[4], 
         row.weight[k] = weight[k];
         row.refusals[k] = refusals[k];
     }
-    reprojectionKernels().tapRow(row);
+    return reprojectionKernels().tapRow(row);
 }
 
-void Reprojection::row(int y, ReprojectedRow& row) const {
-    const int width = signals_.extent().width;
-    row.resize(width);
+int Reprojection::row(int y, int begin, int end, ReprojectedRow& row) const {
     int32_t *index[4], *refusals[4];
     float* weight[4];
     for (int k = 0; k < 4; ++k) {
@@ -102,27 +108,17 @@ void Reprojection::row(int y, ReprojectedRow& row) const {
         weight[k] = row.weight[k].data();
         refusals[k] = row.refusals[k].data();
     }
-    tapRange(y, 0, width, index, weight, refusals);
+    return tapRange(y, begin, end, index, weight, refusals);
 }
 
 ReprojectedTaps Reprojection::taps(int x, int y) const {
-    int32_t at[4], why[4];
-    float parts[4];
-    int32_t* const index[4] = {at, at + 1, at + 2, at + 3};
-    int32_t* const refusals[4] = {why, why + 1, why + 2, why + 3};
-    float* const weight[4] = {parts, parts + 1, parts + 2, parts + 3};
-    tapRange(y, x, x + 1, index, weight, refusals);
-    ReprojectedTaps taps;
+    ReprojectedRow one(1);
+    row(y, x, x + 1, one);
+    ReprojectedTaps taps = one.pixel(0);
     const float px = static_cast<float>(x) + signals_[Signal::Motion].at(0, x, y), py = static_cast<float>(y) + signals_[Signal::Motion].at(1, x, y);
     if (std::fabs(px) < 1e6f && std::fabs(py) < 1e6f) {
-        taps.x0 = static_cast<int>(std::floor(px));
-        taps.y0 = static_cast<int>(std::floor(py));
-    }
-    for (size_t k = 0; k < 4; ++k) {
-        taps.refusals[k] = static_cast<uint8_t>(why[k]);
-        if (why[k] != kTapKept) continue;
-        taps.index[static_cast<size_t>(taps.count)] = at[k];
-        taps.weight[static_cast<size_t>(taps.count++)] = parts[k];
+        taps.x0 = floorOf(wholePixel(px));
+        taps.y0 = floorOf(wholePixel(py));
     }
     if (taps.count > 0) return taps;
     const ReprojectedTaps wide = widen(x, y);

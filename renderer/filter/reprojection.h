@@ -28,7 +28,6 @@ struct SurfaceRecord {
     void reset(Extent2 extent);
     /// Rows [begin, end) of a frame of this extent.
     void copyRows(const Signals& signals, int begin, int end);
-    void copyFrom(const Signals& signals);
     size_t bytes() const { return inverseDepth.bytes() + objectNormal.bytes() + objectId.bytes(); }
 };
 
@@ -47,14 +46,15 @@ struct ReprojectedTaps {
     int x0 = 0, y0 = 0;          ///< of tap (0,0)
 };
 
-/// The same for a row of pixels, as kernels take it: four taps a pixel, those that are refused with weight 0.
+/// The 2x2 taps of a stretch of pixels, as kernels take them: four a pixel, those that are refused with weight 0.
 struct ReprojectedRow {
     std::vector<int32_t> index[4], refusals[4];
     std::vector<float> weight[4];
 
-    void resize(int width);
-    /// Nothing of 2x2 passed the tests.
-    bool lost(int x) const;
+    explicit ReprojectedRow(int pixels);
+    /// Nothing of the k-th pixel's passed the tests.
+    bool lost(int k) const;
+    ReprojectedTaps pixel(int k) const;
 };
 
 /// Tests one frame's pixels against the previous frame's.
@@ -65,13 +65,13 @@ public:
     /// 2x2 bilinear taps, each tested for depth, object-space normal and object; a refused tap's weight is spread
     /// uniformly over the others. If none is left, the pixels of 3x3 around the point that pass, in equal parts. The sky has none.
     ReprojectedTaps taps(int x, int y) const;
-    /// The 2x2 taps of all pixels of a row; where they are lost(), widen() may find others.
-    void row(int y, ReprojectedRow& row) const;
+    /// The 2x2 taps of pixels [begin, end) of row y; where they are lost(), widen() may find others. Returns how many are.
+    int row(int y, int begin, int end, ReprojectedRow& row) const;
     /// The 3x3 fall-back of a pixel that lost its 2x2 taps: count 0 if it is switched off, or finds nothing.
     ReprojectedTaps widen(int x, int y) const;
 
 private:
-    void tapRange(int y, int begin, int end, int32_t* const index[4], float* const weight[4], int32_t* const refusals[4]) const;
+    int tapRange(int y, int begin, int end, int32_t* const index[4], float* const weight[4], int32_t* const refusals[4]) const;
 
     const Signals& signals_;
     const SurfaceRecord& previous_;

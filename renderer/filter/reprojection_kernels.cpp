@@ -4,6 +4,7 @@
 
 #include "filter/index_runs.h"
 #include "filter/tap_refusal.h"
+#include "filter/whole_pixel.h"
 
 namespace lumi::LUMI_ISA {
 namespace {
@@ -17,12 +18,6 @@ struct Points {
     alignas(64) float inverseDepth[kBlock], allowed[kBlock];
     alignas(64) int32_t absent[kBlock];  ///< 1: the sky, or far off the image
 };
-
-/// Largest integer not above `v`, |v| < 2^24.
-inline int32_t floorOf(float v) {
-    const int32_t whole = static_cast<int32_t>(v);
-    return whole - (v < static_cast<float>(whole) ? 1 : 0);
-}
 
 void findPoints(const ReprojectionRow& row, int first, int last, Points& points) {
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row.y) * row.width + first;
@@ -39,8 +34,8 @@ void findPoints(const ReprojectionRow& row, int first, int last, Points& points)
         float px = static_cast<float>(first + k) + mx[k], py = fy0 + my[k];
         // Written so that NaN is far.
         const bool near = (px > -2.0f) & (py > -2.0f) & (px < right) & (py < bottom);
-        px = near ? px : 0.0f;
-        py = near ? py : 0.0f;
+        px = wholePixel(near ? px : 0.0f);
+        py = wholePixel(near ? py : 0.0f);
         points.absent[k] = (near & (object[k] != 0)) ? 0 : 1;
         const int32_t x0 = floorOf(px), y0 = floorOf(py);
         points.x0[k] = x0;
@@ -96,8 +91,8 @@ void testTap(const ReprojectionRow& row, int tap, int first, int from, int to, c
     }
 }
 
-/// A refused tap's weight is spread uniformly over the others [Schied17, sec. 4.1].
-void shareOut(const ReprojectionRow& row) {
+/// A refused tap's weight is spread uniformly over the others [Schied17, sec. 4.1]. Returns how many pixels have none.
+int shareOut(const ReprojectionRow& row) {
     float* __restrict w0 = row.weight[0];
     float* __restrict w1 = row.weight[1];
     float* __restrict w2 = row.weight[2];
@@ -106,6 +101,7 @@ void shareOut(const ReprojectionRow& row) {
     const int32_t* __restrict r1 = row.refusals[1];
     const int32_t* __restrict r2 = row.refusals[2];
     const int32_t* __restrict r3 = row.refusals[3];
+    int without = 0;
     for (int k = 0; k < row.end - row.begin; ++k) {
         const float k0 = r0[k] == 0 ? 1.0f : 0.0f, k1 = r1[k] == 0 ? 1.0f : 0.0f;
         const float k2 = r2[k] == 0 ? 1.0f : 0.0f, k3 = r3[k] == 0 ? 1.0f : 0.0f;
@@ -116,10 +112,12 @@ void shareOut(const ReprojectionRow& row) {
         w1[k] = k1 * (w1[k] + share);
         w2[k] = k2 * (w2[k] + share);
         w3[k] = k3 * (w3[k] + share);
+        without += kept > 0.0f ? 0 : 1;
     }
+    return without;
 }
 
-void tapRow(const ReprojectionRow& row) {
+int tapRow(const ReprojectionRow& row) {
     Points points;
     for (int first = row.begin; first < row.end; first += kBlock) {
         const int last = first + kBlock < row.end ? first + kBlock : row.end;
@@ -131,7 +129,7 @@ void tapRow(const ReprojectionRow& row) {
                 inARow && inside ? testTap<true>(row, tap, first, from, to, points) : testTap<false>(row, tap, first, from, to, points);
         });
     }
-    shareOut(row);
+    return shareOut(row);
 }
 
 }  // namespace

@@ -25,8 +25,9 @@ struct ReprojectionRow {
 };
 
 struct ReprojectionKernels {
-    /// 2x2 bilinear taps, each tested; a refused tap's weight is spread uniformly over the others.
-    void (*tapRow)(const ReprojectionRow& row);
+    /// 2x2 bilinear taps, each tested; a refused tap's weight is spread uniformly over the others. Returns the number of
+    /// pixels that none is left of.
+    int (*tapRow)(const ReprojectionRow& row);
 };
 
 LUMI_KERNELS(ReprojectionKernels, reprojection)

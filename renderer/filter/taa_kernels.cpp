@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "filter/index_runs.h"
+#include "filter/whole_pixel.h"
 
 namespace lumi::LUMI_ISA {
 namespace {
@@ -63,7 +64,6 @@ inline void forRanges(const TaaRow& row, int first, int count, Body body) {
 
 /// Where the pixels were, by the motion of the nearest surface of 3x3: silhouettes move with what is in front.
 void findPoints(const TaaRow& row, const Rows& rows, const Range& range, Block& block) {
-    const float* __restrict z = row.inverseDepth;
     const float* __restrict mx = row.motion[0];
     const float* __restrict my = row.motion[1];
     int32_t* __restrict outX = block.x0 + range.at;
@@ -74,19 +74,25 @@ void findPoints(const TaaRow& row, const Rows& rows, const Range& range, Block& 
     const float right = static_cast<float>(row.width - 1), bottom = static_cast<float>(row.height - 1), y = static_cast<float>(row.y);
     const int32_t lines[3] = {static_cast<int32_t>(rows.above), static_cast<int32_t>(rows.here), static_cast<int32_t>(rows.below)};
     const int32_t sides[3] = {range.left, 0, range.right};
+    const int32_t here = lines[1] + range.first;
+    const float* __restrict z = row.inverseDepth + here;
+    int32_t offset[9];
+    for (int n = 0; n < 9; ++n) offset[n] = lines[n / 3] - lines[1] + sides[n % 3];
     for (int k = 0; k < range.count; ++k) {
         const int32_t x = range.first + k;
-        int32_t at = lines[1] + x;
-        float nearest = z[at];
-        for (int j = 0; j < 3; ++j)
-            for (int i = 0; i < 3; ++i) {
-                const int32_t q = lines[j] + sides[i] + x;
-                const float there = z[q];
-                const bool nearer = there > nearest;
-                nearest = nearer ? there : nearest;
-                at = nearer ? q : at;
-            }
+        int32_t to = 0;  // its offset; indices of loads are k and what does not change, so that they are read in a row
+        float nearest = z[k];
+        for (int n = 0; n < 9; ++n) {
+            const float there = (z + offset[n])[k];
+            const bool nearer = there > nearest;
+            nearest = nearer ? there : nearest;
+            to = nearer ? offset[n] : to;
+        }
+        const int32_t at = here + k + to;
         float px = static_cast<float>(x) + mx[at], py = y + my[at];
+        const bool near = (px > -1.0f) & (py > -1.0f) & (px < right + 1.0f) & (py < bottom + 1.0f);
+        px = wholePixel(near ? px : -1.0f);
+        py = wholePixel(near ? py : -1.0f);
         const bool inside = (px >= 0.0f) & (py >= 0.0f) & (px <= right) & (py <= bottom);
         px = inside ? px : 0.0f;
         py = inside ? py : 0.0f;

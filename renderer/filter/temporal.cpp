@@ -33,10 +33,13 @@ HistoryTaps tapsOf(const ReprojectedTaps& pixel) {
     return taps;
 }
 
+constexpr int kBlock = 256;  ///< pixels whose taps stay in the first-level cache
+
 /// Scratch of one task.
-struct TemporalRow {
-    ReprojectedRow taps;
-    std::vector<float> colourAlphas, momentsAlphas;
+struct TemporalBlock {
+    ReprojectedRow taps{kBlock};
+    float colourAlphas[kBlock], momentsAlphas[kBlock];
+    float adaptedColourAlphas[kBlock], adaptedMomentsAlphas[kBlock];  ///< of one component, with its loss
 };
 
 class TemporalPass {
@@ -46,74 +49,83 @@ public:
         : signals_(signals), settings_(settings), samples_(samples), previous_(previous), next_(next), verdict_(verdict), loss_(loss),
           reprojection_(signals, previous ? previous->surface : next.surface, settings.reprojection) {}
 
-    void row(int y, TemporalRow& scratch) const {
+    void row(int y, TemporalBlock& scratch) const {
         const int width = signals_.extent().width;
-        scratch.colourAlphas.resize(static_cast<size_t>(width));
-        scratch.momentsAlphas.resize(static_cast<size_t>(width));
-        if (verdict_) judge(y);
-        if (!previous_) return integrate(y, 0, width, {}, scratch);
-        reprojection_.row(y, scratch.taps);
-        const auto follows = [&taps = scratch.taps](int x) {
-            const auto at = static_cast<size_t>(x);
+        for (int first = 0; first < width; first += kBlock) block(y, first, std::min(first + kBlock, width), scratch);
+    }
+
+private:
+    void block(int y, int first, int last, TemporalBlock& scratch) const {
+        if (!previous_) {
+            integrate(y, first, last - first, {}, scratch);
+            for (int x = first; x < last && verdict_; ++x) judge(x, y, {});
+            return;
+        }
+        const ReprojectedRow& taps = scratch.taps;
+        const bool anyLost = reprojection_.row(y, first, last, scratch.taps) > 0;
+        const auto follows = [&taps](int k) {
+            const auto at = static_cast<size_t>(k);
             bool all = true;
             for (const auto& index : taps.index) all = all && index[at] == index[at - 1] + 1;
             return all;
         };
-        forIndexRuns(0, width, follows, [&](int from, int to, bool inARow) {
-            integrate(y, from, to - from, tapsOf(scratch.taps, from, inARow), scratch);
+        forIndexRuns(0, last - first, follows, [&](int from, int to, bool inARow) {
+            integrate(y, first + from, to - from, tapsOf(taps, from, inARow), scratch);
         });
-        if (!settings_.reprojection.wideFallback) return;
-        for (int x = 0; x < width; ++x) {
-            if (!scratch.taps.lost(x)) continue;
-            const ReprojectedTaps wide = reprojection_.widen(x, y);
-            if (wide.count > 0) integrate(y, x, 1, tapsOf(wide), scratch);
+        if (!anyLost && !verdict_) return;
+        for (int x = first; x < last; ++x) {
+            const int k = x - first;
+            const ReprojectedTaps pixel = taps.lost(k) ? reprojection_.widen(x, y) : taps.pixel(k);
+            if (taps.lost(k) && pixel.count > 0) integrate(y, x, 1, tapsOf(pixel), scratch);
+            if (verdict_) judge(x, y, pixel.wide ? pixel : taps.pixel(k));
         }
     }
 
-private:
-    void judge(int y) const {
-        for (int x = 0; x < signals_.extent().width; ++x) {
-            const bool sky = signals_.ids(Signal::ObjectId).at(0, x, y) == 0;
-            verdict_->at(0, x, y) = previous_ ? verdictValue(reprojection_.taps(x, y), sky) : sky ? 0.0f : 4.0f;
-        }
+    void judge(int x, int y, const ReprojectedTaps& taps) const {
+        const bool sky = signals_.ids(Signal::ObjectId).at(0, x, y) == 0;
+        verdict_->at(0, x, y) = previous_ ? verdictValue(taps, sky) : sky ? 0.0f : 4.0f;
     }
 
     /// Pixels [x, x + count) of row y.
-    void integrate(int y, int x, int count, const HistoryTaps& taps, TemporalRow& scratch) const {
+    void integrate(int y, int x, int count, const HistoryTaps& taps, TemporalBlock& scratch) const {
         const int64_t at = static_cast<int64_t>(y) * signals_.extent().width + x;
-        HistoryLengthRow lengths{count, taps, previous_ ? previous_->length.data() : nullptr, signals_.ids(Signal::ObjectId).data() + at,
-                                 settings_.colourAlpha, settings_.momentsAlpha, kLongestHistory, settings_.arithmeticWarmUp,
-                                 next_.length.data() + at, scratch.colourAlphas.data(), scratch.momentsAlphas.data()};
         const TemporalKernels& kernels = temporalKernels();
+        kernels.lengthRow({count, taps, previous_ ? previous_->length.data() : nullptr, signals_.ids(Signal::ObjectId).data() + at,
+                           settings_.colourAlpha, settings_.momentsAlpha, kLongestHistory, settings_.arithmeticWarmUp,
+                           next_.length.data() + at, scratch.colourAlphas, scratch.momentsAlphas});
         for (size_t n = 0; n < samples_.size(); ++n) {
-            if (n == 0 || !loss_.empty()) kernels.lengthRow(lengths);
+            IntegrationRow row = rowOf(at, n);
+            row.count = count;
+            row.taps = taps;
+            row.colourAlphas = scratch.colourAlphas;
+            row.momentsAlphas = scratch.momentsAlphas;
             if (!loss_.empty()) {
-                kernels.adaptRow(loss_[n]->data() + at, lengths.colourAlphas, count);
-                kernels.adaptRow(loss_[n]->data() + at, lengths.momentsAlphas, count);
+                const float* lambda = loss_[n]->data() + at;
+                kernels.adaptRow(lambda, scratch.colourAlphas, scratch.adaptedColourAlphas, count);
+                kernels.adaptRow(lambda, scratch.momentsAlphas, scratch.adaptedMomentsAlphas, count);
+                row.colourAlphas = scratch.adaptedColourAlphas;
+                row.momentsAlphas = scratch.adaptedMomentsAlphas;
             }
-            integrateComponent(at, lengths, n);
+            kernels.integrateRow(row);
         }
         if (!loss_.empty()) shorten(at, count);
     }
 
-    void integrateComponent(int64_t at, const HistoryLengthRow& lengths, size_t n) const {
-        const Image& sample = *samples_[n];
+    /// The planes of component n from pixel `at` on.
+    IntegrationRow rowOf(int64_t at, size_t n) const {
         TemporalComponent& to = next_.components[n];
         IntegrationRow row;
-        row.count = lengths.count;
-        row.taps = lengths.taps;
         for (int c = 0; c < 3; ++c) {
             row.previousColour[c] = previous_ ? previous_->components[n].colour.plane(c).data : nullptr;
-            row.sample[c] = sample.plane(c).data + at;
+            row.sample[c] = samples_[n]->plane(c).data + at;
             row.colour[c] = to.colour.plane(c).data + at;
         }
+        if (!settings_.moments) return row;
         row.previousMean = previous_ ? previous_->components[n].mean.data() : nullptr;
         row.previousVariance = previous_ ? previous_->components[n].sampleVariance.data() : nullptr;
-        row.colourAlphas = lengths.colourAlphas;
-        row.momentsAlphas = lengths.momentsAlphas;
         row.mean = to.mean.data() + at;
         row.variance = to.sampleVariance.data() + at;
-        temporalKernels().integrateRow(row);
+        return row;
     }
 
     /// What was given up is not part of the history any more.
@@ -138,7 +150,7 @@ private:
 
 }  // namespace
 
-void TemporalSettings::describe(ParameterVisitor& v, bool moments) {
+void TemporalSettings::describe(ParameterVisitor& v) {
     v.number("color-alpha", colourAlpha,
              {.label = "Colour alpha",
               .min = 0.01,
@@ -157,14 +169,17 @@ void TemporalSettings::describe(ParameterVisitor& v, bool moments) {
     reprojection.describe(v);
 }
 
-void TemporalHistory::reset(Extent2 extent, int count) {
+void TemporalHistory::reset(Extent2 extent, int count, bool moments) {
     surface.reset(extent);
-    if (length.extent() == extent && components.size() == static_cast<size_t>(count)) return;
+    const Extent2 ofMoments = moments ? extent : Extent2{};
+    const auto fits = [&](const TemporalComponent& c) { return c.mean.extent() == ofMoments; };
+    if (length.extent() == extent && components.size() == static_cast<size_t>(count) && std::all_of(components.begin(), components.end(), fits))
+        return;
     components.resize(static_cast<size_t>(count));
     for (TemporalComponent& component : components) {
         component.colour.reset(extent, 3);
-        component.mean.reset(extent, 1);
-        component.sampleVariance.reset(extent, 1);
+        component.mean.reset(ofMoments, 1);
+        component.sampleVariance.reset(ofMoments, 1);
     }
     length.reset(extent, 1);
 }
@@ -180,12 +195,12 @@ bool filterTemporally(const Signals& signals, const TemporalSettings& settings, 
                       const HistoryLoss& loss) {
     const Extent2 extent = signals.extent();
     assert(loss.empty() || loss.size() == samples.size());
-    next.reset(extent, static_cast<int>(samples.size()));
+    next.reset(extent, static_cast<int>(samples.size()), settings.moments);
     if (previous && (previous->length.extent() != extent || previous->components.size() != samples.size())) previous = nullptr;
     if (verdict) verdict->reset(extent, 1);
     const TemporalPass pass(signals, settings, samples, previous, next, verdict, loss);
     parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
-        TemporalRow scratch;
+        TemporalBlock scratch;
         next.surface.copyRows(signals, static_cast<int>(begin), static_cast<int>(end));
         for (int y = static_cast<int>(begin); y < end; ++y) pass.row(y, scratch);
     }, stop);

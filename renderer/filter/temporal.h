@@ -15,16 +15,16 @@ struct TemporalSettings {
     float colourAlpha = 0.2f;
     float momentsAlpha = 0.2f;
     bool arithmeticWarmUp = false;  ///< 1/n until that falls below alpha
+    bool moments = true;            ///< the method uses them: they are kept, and their alpha is a parameter of it
     ReprojectionSettings reprojection;
 
-    /// `moments`: the method uses them, so that their alpha is a parameter of it.
-    void describe(ParameterVisitor& v, bool moments = true);
+    void describe(ParameterVisitor& v);
 };
 
 /// One component (direct, indirect or both together) as it is carried from frame to frame.
 struct TemporalComponent {
     Image colour;           ///< RGB, integrated, or what a spatial filter feeds back in its place
-    Image mean;             ///< first moment of luminance
+    Image mean;             ///< first moment of luminance; empty, like the next, where nobody uses moments
     Image sampleVariance;   ///< sigma'^2 = mu2' - mu1'^2, the variance of one sample
 };
 
@@ -33,7 +33,7 @@ struct TemporalHistory {
     Image length;  ///< frames that make up a pixel, 1 after a disocclusion; 0 on the sky
     SurfaceRecord surface;
 
-    void reset(Extent2 extent, int components);
+    void reset(Extent2 extent, int components, bool moments);
     size_t bytes() const;
 };
 

@@ -83,7 +83,7 @@ void integrateMoments(const IntegrationRow& row) {
 template <int Taps, bool InARow>
 void integrate(const IntegrationRow& row) {
     for (int channel = 0; channel < 3; ++channel) integrateColour<Taps, InARow>(row, channel);
-    integrateMoments<Taps, InARow>(row);
+    if (row.mean) integrateMoments<Taps, InARow>(row);
 }
 
 void integrateRow(const IntegrationRow& row) {
@@ -94,8 +94,8 @@ void integrateRow(const IntegrationRow& row) {
     }
 }
 
-void adaptRow(const float* __restrict lambda, float* __restrict alphas, int count) {
-    for (int x = 0; x < count; ++x) alphas[x] += (1.0f - alphas[x]) * lambda[x];
+void adaptRow(const float* __restrict lambda, const float* __restrict alphas, float* __restrict adapted, int count) {
+    for (int x = 0; x < count; ++x) adapted[x] = alphas[x] + (1.0f - alphas[x]) * lambda[x];
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ struct IntegrationRow {
     const float* colourAlphas = nullptr;
     const float* momentsAlphas = nullptr;
     float* colour[3];
-    float* mean = nullptr;
+    float* mean = nullptr;  ///< null: no moments
     float* variance = nullptr;
 };
 
@@ -47,7 +47,7 @@ struct TemporalKernels {
     /// C' = alpha C + (1 - alpha) C'(i-1), and the same for the moments about the mean.
     void (*integrateRow)(const IntegrationRow& row);
     /// a' = a + (1 - a) lambda.
-    void (*adaptRow)(const float* lambda, float* alphas, int count);
+    void (*adaptRow)(const float* lambda, const float* alphas, float* adapted, int count);
 };
 
 LUMI_KERNELS(TemporalKernels, temporal)

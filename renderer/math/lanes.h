@@ -31,10 +31,11 @@ LUMI_LANES Lanes distanceOf(Lanes a, Lanes b) { return _mm512_maskz_range_ps(kAl
 LUMI_LANES Lanes absolute(Lanes v) { return _mm512_abs_ps(v); }
 /// 1/v to 14 bits at least.
 LUMI_LANES Lanes roughReciprocal(Lanes v) { return _mm512_maskz_rcp14_ps(kAllLanes, v); }
+/// 1/sqrt(v) to 14 bits at least.
+LUMI_LANES Lanes roughInverseRoot(Lanes v) { return _mm512_maskz_rsqrt14_ps(kAllLanes, v); }
 /// `otherwise` where v is NaN; atMost() too.
 LUMI_LANES Lanes atLeast(Lanes v, Lanes otherwise) { return _mm512_maskz_max_ps(kAllLanes, v, otherwise); }
 LUMI_LANES Lanes atMost(Lanes v, Lanes otherwise) { return _mm512_maskz_min_ps(kAllLanes, v, otherwise); }
-LUMI_LANES Lanes squareRoot(Lanes v) { return _mm512_maskz_sqrt_ps(kAllLanes, v); }
 LUMI_LANES bool anyAbove(Lanes v, Lanes limit) { return _mm512_cmp_ps_mask(v, limit, _CMP_GT_OQ) != 0; }
 
 /// yes where a > b, else no.
@@ -42,12 +43,14 @@ LUMI_LANES Lanes selectAbove(Lanes a, Lanes b, Lanes yes, Lanes no) {
     return _mm512_mask_blend_ps(_mm512_cmp_ps_mask(a, b, _CMP_GT_OQ), no, yes);
 }
 
-LUMI_LANES __mmask16 laneMask(int from, int to) {
-    return static_cast<__mmask16>(to > from ? ((1u << to) - 1u) & ~((1u << from) - 1u) : 0u);
+/// Lanes [from, to) of a register; none where to <= from.
+using LaneMask = __mmask16;
+LUMI_LANES LaneMask laneMask(int from, int to) {
+    return static_cast<LaneMask>(to > from ? ((1u << to) - 1u) & ~((1u << from) - 1u) : 0u);
 }
-/// Lanes [from, to) of p[0..kLanes), the others 0; memory of the others is not touched.
-LUMI_LANES Lanes loadPart(const float* p, int from, int to) { return _mm512_maskz_loadu_ps(laneMask(from, to), p); }
-LUMI_LANES void storePart(float* p, int from, int to, Lanes v) { _mm512_mask_storeu_ps(p, laneMask(from, to), v); }
+/// The mask's lanes of p[0..kLanes), the others 0; memory of the others is not touched.
+LUMI_LANES Lanes loadPart(const float* p, LaneMask mask) { return _mm512_maskz_loadu_ps(mask, p); }
+LUMI_LANES void storePart(float* p, LaneMask mask, Lanes v) { _mm512_mask_storeu_ps(p, mask, v); }
 
 #elif defined(__AVX2__) && defined(__FMA__)
 
@@ -64,19 +67,20 @@ LUMI_LANES Lanes distanceOf(Lanes a, Lanes b) { return _mm256_min_ps(absolute(a 
 LUMI_LANES Lanes roughReciprocal(Lanes v) { return lanes(1.0f) / v; }  // processors differ in what their estimate is
 LUMI_LANES Lanes atLeast(Lanes v, Lanes otherwise) { return _mm256_max_ps(v, otherwise); }
 LUMI_LANES Lanes atMost(Lanes v, Lanes otherwise) { return _mm256_min_ps(v, otherwise); }
-LUMI_LANES Lanes squareRoot(Lanes v) { return _mm256_sqrt_ps(v); }
+LUMI_LANES Lanes roughInverseRoot(Lanes v) { return lanes(1.0f) / _mm256_sqrt_ps(v); }
 LUMI_LANES bool anyAbove(Lanes v, Lanes limit) { return _mm256_movemask_ps(_mm256_cmp_ps(v, limit, _CMP_GT_OQ)) != 0; }
 
 LUMI_LANES Lanes selectAbove(Lanes a, Lanes b, Lanes yes, Lanes no) {
     return _mm256_blendv_ps(no, yes, _mm256_cmp_ps(a, b, _CMP_GT_OQ));
 }
 
-LUMI_LANES __m256i laneMask(int from, int to) {
+using LaneMask = __m256i;
+LUMI_LANES LaneMask laneMask(int from, int to) {
     const __m256i at = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     return _mm256_andnot_si256(_mm256_cmpgt_epi32(_mm256_set1_epi32(from), at), _mm256_cmpgt_epi32(_mm256_set1_epi32(to), at));
 }
-LUMI_LANES Lanes loadPart(const float* p, int from, int to) { return _mm256_maskload_ps(p, laneMask(from, to)); }
-LUMI_LANES void storePart(float* p, int from, int to, Lanes v) { _mm256_maskstore_ps(p, laneMask(from, to), v); }
+LUMI_LANES Lanes loadPart(const float* p, LaneMask mask) { return _mm256_maskload_ps(p, mask); }
+LUMI_LANES void storePart(float* p, LaneMask mask, Lanes v) { _mm256_maskstore_ps(p, mask, v); }
 
 #else
 
@@ -93,22 +97,26 @@ LUMI_LANES Lanes distanceOf(Lanes a, Lanes b) { return _mm_min_ps(absolute(a - b
 LUMI_LANES Lanes roughReciprocal(Lanes v) { return lanes(1.0f) / v; }
 LUMI_LANES Lanes atLeast(Lanes v, Lanes otherwise) { return _mm_max_ps(v, otherwise); }
 LUMI_LANES Lanes atMost(Lanes v, Lanes otherwise) { return _mm_min_ps(v, otherwise); }
-LUMI_LANES Lanes squareRoot(Lanes v) { return _mm_sqrt_ps(v); }
+LUMI_LANES Lanes roughInverseRoot(Lanes v) { return lanes(1.0f) / _mm_sqrt_ps(v); }
 LUMI_LANES bool anyAbove(Lanes v, Lanes limit) { return _mm_movemask_ps(_mm_cmpgt_ps(v, limit)) != 0; }
 LUMI_LANES Lanes selectAbove(Lanes a, Lanes b, Lanes yes, Lanes no) {
     const Lanes mask = _mm_cmpgt_ps(a, b);
     return _mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no));
 }
 
-LUMI_LANES Lanes loadPart(const float* p, int from, int to) {
+struct LaneMask {
+    int from, to;
+};
+LUMI_LANES LaneMask laneMask(int from, int to) { return {from, to}; }
+LUMI_LANES Lanes loadPart(const float* p, LaneMask mask) {
     alignas(16) float part[kLanes] = {0, 0, 0, 0};
-    for (int i = from; i < to; ++i) part[i] = p[i];
+    for (int i = mask.from; i < mask.to; ++i) part[i] = p[i];
     return _mm_load_ps(part);
 }
-LUMI_LANES void storePart(float* p, int from, int to, Lanes v) {
+LUMI_LANES void storePart(float* p, LaneMask mask, Lanes v) {
     alignas(16) float part[kLanes];
     _mm_store_ps(part, v);
-    for (int i = from; i < to; ++i) p[i] = part[i];
+    for (int i = mask.from; i < mask.to; ++i) p[i] = part[i];
 }
 
 #endif

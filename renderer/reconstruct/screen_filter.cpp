@@ -77,7 +77,7 @@ std::vector<Tap> temporalTaps() {
 void AccumulatedInput::describe(ParameterVisitor& v) {
     v.toggle("temporal", enabled_,
              {.label = "Temporal accumulation", .help = "Integrate over time before filtering, as SVGF does ([Schied17, sec. 5.1])"});
-    v.when(enabled_, [&] { settings_.describe(v, false); });
+    v.when(enabled_, [&] { settings_.describe(v); });
 }
 
 const Image* AccumulatedInput::integrate(const FrameContext& context, const DemodulatedFrame& frame,

@@ -58,6 +58,7 @@ std::vector<Tap> temporalTaps();
 /// indirect light together, and the parameter `temporal` that switches it off.
 class AccumulatedInput {
 public:
+    AccumulatedInput() { settings_.moments = false; }
     SignalSet reads() const { return enabled_ ? reprojectionSignals() : SignalSet{}; }
     void describe(ParameterVisitor& v);
     bool enabled() const { return enabled_; }

@@ -21,7 +21,7 @@ std::vector<Tap> declareTaps() {
 
 }  // namespace
 
-AafModule::AafModule() : ScreenFilter(declareTaps(), false) {}
+AafModule::AafModule() : ScreenFilter(declareTaps(), false) { temporalSettings_.moments = false; }
 
 SignalSet AafModule::reads() const {
     return commonSignals() | occlusionSignals() | (temporal_ ? reprojectionSignals() : SignalSet{});
@@ -30,7 +30,7 @@ SignalSet AafModule::reads() const {
 void AafModule::describe(ParameterVisitor& v) {
     v.toggle("temporal", temporal_,
              {.label = "Temporal accumulation", .help = "Integrate light and occlusion distances over time ([Schied17, sec. 5.1])"});
-    v.when(temporal_, [&] { temporalSettings_.describe(v, false); });
+    v.when(temporal_, [&] { temporalSettings_.describe(v); });
     v.integer("window-radius", windowRadius_,
               {.label = "Window radius", .min = 0, .max = 8, .unit = "px", .help = "Of the window that d2max is gathered in"});
     v.number("overlap", overlap_,

@@ -34,7 +34,8 @@ Signals wall(Vec2 motion = Vec2(0)) {
 
 ReprojectedTaps tapsAt(const Signals& signals, const Signals& before, int x, int y, ReprojectionSettings settings = {}) {
     SurfaceRecord record;
-    record.copyFrom(before);
+    record.reset(before.extent());
+    record.copyRows(before, 0, before.extent().height);
     return Reprojection(signals, record, settings).taps(x, y);
 }
 
