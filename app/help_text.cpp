@@ -84,7 +84,8 @@ std::string benchFooter() {
            "the limit is twice what scene and tracer hold. Sponza is measured where $LUMISCOPE_ASSETS holds it.\n"
            "metric/ID: Mpixel/s on 1920x1080. filter/MODULE, filter/MODULE/STAGE: frames a second at 1280x720. The limit of\n"
            "both streams what they read through memory once, in the same run; memory/metric/ID and memory/filter/MODULE tell\n"
-           "their peak memory beside it. Medians of 5 to 25 runs; spread is (slowest - fastest) / median.\n";
+           "their peak memory beside it. The stage `filter` is all stages but antialiasing. size/svgf: that stage in Mpixel/s at\n"
+           "two other sizes; the limit is the same at 1280x720. Medians of 5 to 25 runs; spread is (slowest - fastest) / median.\n";
 }
 
 std::string referenceFooter() {

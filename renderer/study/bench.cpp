@@ -36,6 +36,7 @@ public:
             add("metric/" + id, [this, id](const std::string& name) { benchMetric(id, name, options_.stop, output_); });
         for (const std::string& id : benchedModules())
             add("filter/" + id, [this, id](const std::string&) { filters_.run(id, output_); });
+        add("size/svgf", [this](const std::string& name) { filters_.runSizes("svgf", name, output_); });
         if (!hasPathtracer()) return;
         add("trace/embree-pathtracer/cornell_box", [this](const std::string& name) { pathtracer(name, ""); });
         for (const char* scene : {"atrium", "sponza"})
@@ -178,7 +179,8 @@ std::vector<BenchEntry> benchEntries() {
         {"build/", "seconds to make the scene ready for rays"},
         {"memory/", "peak of loading and rendering; the limit is twice what scene and tracer hold"},
         {"metric/", "Mpixel/s on 1920x1080; the limit streams what it reads through memory; with its peak memory"},
-        {"filter/", "frames a second at 1280x720, and of each stage; the limit streams what it reads; with its peak memory"}};
+        {"filter/", "frames a second at 1280x720, and of each stage; the limit streams what it reads; with its peak memory"},
+        {"size/", "Mpixel/s of the filter without antialiasing at two sizes; the limit is that at 1280x720"}};
     MessageLog log;
     const BenchOptions options{.filter = "", .program = "/proc/self/exe", .stop = {}};
     const Bench bench(options, log, {});

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -13,6 +15,7 @@ namespace lumi {
 namespace {
 
 constexpr Extent2 kFilterExtent{1280, 720};
+constexpr Extent2 kOtherExtents[] = {{640, 360}, {1920, 1080}};
 constexpr double kMiB = 1024 * 1024;
 /// Frames before the first that counts: history is full, and every page of memory has been touched.
 constexpr FrameNumber kWarmUp = 6;
@@ -32,11 +35,11 @@ size_t bytesOf(const Signals& signals, const SignalSet& read) {
 /// One frame of a scene with all its signals.
 class ModuleBench {
 public:
-    ModuleBench(const std::shared_ptr<const Scene>& scene, const std::stop_token& stop) {
+    ModuleBench(const std::shared_ptr<const Scene>& scene, Extent2 extent, const std::stop_token& stop) {
         posed_ = poseScene(scene, {});
-        camera_ = poseCamera(cameraAt(*scene, 0, 0), kFilterExtent);
+        camera_ = poseCamera(cameraAt(*scene, 0, 0), extent);
         tracer_.bind(posed_);
-        sampling_.extent = kFilterExtent;
+        sampling_.extent = extent;
         sampling_.camera = sampling_.previousCamera = camera_;
         sampling_.jitter = Jitter::PerFrame;
         sampling_.wanted = SignalSet::all();
@@ -69,33 +72,76 @@ std::vector<std::string> benchedModules() {
     return ids;
 }
 
+/// A module with its history, on a frame.
+class WarmModule {
+public:
+    WarmModule(ModuleBench& bench, const std::string& id) : bench_(bench), module_(findModule(id).make()) {
+        module_->resize(bench.signals().extent());
+        for (StageTimer warm; frame_ < kWarmUp;) bench_.run(*module_, frame_++, warm, out_);
+    }
+    /// Adds the time of each stage, and of all but antialiasing as `filter` where there are others.
+    void run(std::map<std::string, RunTimes>& stages) {
+        StageTimer timer;
+        bench_.run(*module_, frame_++, timer, out_);
+        double filter = 0;
+        for (const auto& [stage, ms] : timer.stages()) {
+            stages[stage].add(ms);
+            if (stage != "antialiasing") filter += ms;
+        }
+        if (filter > 0 && timer.stages().size() > 1) stages["filter"].add(filter);
+    }
+    size_t bytesStreamed() const { return bytesOf(bench_.signals(), module_->reads()) + out_.bytes(); }
+    size_t byteCount() const { return module_->byteCount(); }
+
+private:
+    ModuleBench& bench_;
+    std::unique_ptr<Module> module_;
+    Image out_;
+    FrameNumber frame_ = 0;
+};
+
+ModuleBench& FilterBench::frame(Extent2 extent) {
+    if (!scene_) scene_ = loadBenchScene(*benchSceneFile("atrium"), log_, stop_);
+    if (!frame_ || frame_->signals().extent() != extent) {
+        frame_.reset();
+        frame_ = std::make_unique<ModuleBench>(scene_, extent, stop_);
+    }
+    return *frame_;
+}
+
 void FilterBench::run(const std::string& id, const BenchOutput& output) {
-    if (!frame_) frame_ = std::make_unique<ModuleBench>(loadBenchScene(*benchSceneFile("atrium"), log_, stop_), stop_);
+    ModuleBench& bench = frame(kFilterExtent);
     const MemoryPeak peak;
-    const std::unique_ptr<Module> module = findModule(id).make();
-    module->resize(kFilterExtent);
-    Image out;
-    FrameNumber frame = 0;
-    StageTimer warm;
-    while (frame < kWarmUp) frame_->run(*module, frame++, warm, out);
+    WarmModule module(bench, id);
     const std::optional<uint64_t> held = peak.bytes();
 
-    const size_t bytes = bytesOf(frame_->signals(), module->reads()) + out.bytes();
+    const size_t bytes = module.bytesStreamed();
     MemoryStream stream(bytes);
     std::map<std::string, RunTimes> stages;
-    const PairedTimes times = timeInTurn(
-        [&] {
-            StageTimer timer;
-            frame_->run(*module, frame++, timer, out);
-            for (const auto& [stage, ms] : timer.stages()) stages[stage].add(ms);
-        },
-        [&] { stream.run(); }, stop_);
+    const PairedTimes times = timeInTurn([&] { module.run(stages); }, [&] { stream.run(); }, stop_);
     const double limit = 1000 / times.limit.median();
     output({"filter/" + id, 1000 / times.own.median(), "frame/s", times.own.median(), times.own.spread(), limit});
     for (const auto& [stage, own] : stages)
         output({"filter/" + id + "/" + stage, 1000 / std::max(own.median(), 1e-6), "frame/s", own.median(), own.spread(), limit});
-    const uint64_t most = std::max(held.value_or(0), static_cast<uint64_t>(module->byteCount()));
+    const uint64_t most = std::max(held.value_or(0), static_cast<uint64_t>(module.byteCount()));
     output({"memory/filter/" + id, static_cast<double>(most) / kMiB, "MiB", 0, 0, static_cast<double>(bytes) / kMiB});
+}
+
+void FilterBench::runSizes(const std::string& id, const std::string& name, const BenchOutput& output) {
+    if (!scene_) scene_ = loadBenchScene(*benchSceneFile("atrium"), log_, stop_);
+    frame_.reset();
+    ModuleBench usual(scene_, kFilterExtent, stop_);
+    WarmModule module(usual, id);
+    for (const Extent2 extent : kOtherExtents) {
+        ModuleBench bench(scene_, extent, stop_);
+        WarmModule other(bench, id);
+        std::map<std::string, RunTimes> stages, usualStages;
+        timeInTurn([&] { other.run(stages); }, [&] { module.run(usualStages); }, stop_);
+        const RunTimes& own = stages["filter"];
+        const auto rate = [](Extent2 size, const RunTimes& ms) { return static_cast<double>(size.area()) * 1e-3 / std::max(ms.median(), 1e-6); };
+        output({fmt::format("{}/{}x{}", name, extent.width, extent.height), rate(extent, own), "Mpixel/s", own.median(), own.spread(),
+                rate(kFilterExtent, usualStages["filter"])});
+    }
 }
 
 }  // namespace lumi

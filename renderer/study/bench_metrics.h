@@ -2,11 +2,13 @@
 #include <functional>
 #include <memory>
 
+#include "math/vector.h"
 #include "study/bench.h"
 
 namespace lumi {
 
 class ModuleBench;
+struct Scene;
 
 using BenchOutput = std::function<void(const BenchResult&)>;
 
@@ -24,11 +26,17 @@ public:
     /// `filter/<module>` in frames a second, then `filter/<module>/<stage>` for each of its stages; the limit streams the
     /// signals that it reads and its image through memory once. `memory/filter/<module>` tells what it holds at its peak
     /// (history, scratch and its image, whichever stage needs most), held against the same bytes.
+    /// The stage `filter` is all of a module's stages but antialiasing, which follows the filter as a pass of its own.
     void run(const std::string& module, const BenchOutput& output);
+    /// `<name>/640x360` and `<name>/1920x1080`: Mpixel/s of the stage `filter`; the limit is the same at 1280x720 in the same run.
+    void runSizes(const std::string& module, const std::string& name, const BenchOutput& output);
 
 private:
+    ModuleBench& frame(Extent2 extent);
+
     MessageLog& log_;
     std::stop_token stop_;
+    std::shared_ptr<const Scene> scene_;
     std::unique_ptr<ModuleBench> frame_;
 };
 
