@@ -77,6 +77,8 @@ int runCommand(const CommandLine& line) {
 }  // namespace lumi
 
 int main(int argc, char** argv) {
+    // Where both streams go to one file or pipe, lines keep their order.
+    std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
     try {
         return lumi::runCommand(lumi::parseCommandLine(argc, argv));
     } catch (const lumi::Error& error) {
