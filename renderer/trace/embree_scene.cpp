@@ -26,8 +26,8 @@ const char* deviceConfig() {
     }
 }
 
-/// Triangles up to which shadow rays go in packets: box scenes of a few dozen gain a third to two thirds by them, those of
-/// 100,000 and more lose up to a fifth.
+/// Triangles up to which bounce and shadow rays go in packets: box scenes of a few dozen gain a third to two thirds by them,
+/// those of 100,000 and more lose up to a fifth.
 constexpr size_t kSmallScene = 10000;
 
 }  // namespace
@@ -190,7 +190,7 @@ void EmbreeScene::rebuild(const PosedScene& posed, std::vector<Plan> plans) {
     size_t triangles = 0;
     for (const Plan& plan : plans_)
         if (plan.mesh) triangles += plan.mesh->triangles.size();
-    shadowPacketWidth_ = triangles <= kSmallScene ? packetWidth_ : 1;
+    strayPacketWidth_ = triangles <= kSmallScene ? packetWidth_ : 1;
     throwIfFailed("building the scene for ray tracing");
 }
 

@@ -50,9 +50,9 @@ public:
     const Vec3* worldPositions(uint32_t instance) const;
     /// Widest packet the device traces natively: 16, 8, 4 or 1.
     int packetWidth() const { return packetWidth_; }
-    /// In what packets shadow rays are fastest: the widest in small scenes, whose few nodes most rays meet alike, else
-    /// single rays, even of neighbouring pixels.
-    int shadowPacketWidth() const { return shadowPacketWidth_; }
+    /// In what packets rays that go anywhere are fastest: the widest in small scenes, whose few nodes most rays meet alike,
+    /// else 1.
+    int strayPacketWidth() const { return strayPacketWidth_; }
     size_t byteCount() const;
 
     /// Every ray traced from now on goes to `recorder` too; null: to none.
@@ -84,7 +84,7 @@ private:
 
     RTCDevice device_ = nullptr;
     RTCScene top_ = nullptr;
-    int packetWidth_ = 1, shadowPacketWidth_ = 1;
+    int packetWidth_ = 1, strayPacketWidth_ = 1;
     const PosedScene* posed_ = nullptr;
     /// Of each instance: has it a surface whose back the camera does not see, and does Embree see its faces turned round?
     struct Sides {

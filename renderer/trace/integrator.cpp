@@ -83,15 +83,12 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
         else findHits(batch, depth, coherent, counts);
         const bool wantsVertices = depth < needs_.vertexDepths;
         if (wantsVertices) batch.vertices.assign(batch.active.size(), PathVertex()), batch.vertexOf.resize(count);
-        if (!given) arrive(batch, depth);
         batch.pending.clear();
         batch.shadowRays.clear();
-        for (uint32_t row = 0; row < batch.active.size(); ++row) {
-            if (wantsVertices) batch.vertexOf[batch.active[row]] = row;
-            batch.paths[batch.active[row]].alive = false;
-            if (given || !batch.collected[row]) shade(batch, row, depth, given ? firstPoints : std::span<const SurfacePoint>());
-        }
-        shadePlain(batch, depth);
+        const auto rows = static_cast<uint32_t>(batch.active.size());
+        for (uint32_t first = 0; first < rows; first += PlainLanes::kMost)
+            shadeRows(batch, {first, std::min<uint32_t>(rows, first + PlainLanes::kMost)}, depth,
+                      given ? firstPoints : std::span<const SurfacePoint>());
         traceShadows(batch, depth, coherent, counts);
         if (wantsVertices) report(batch, depth);
         std::erase_if(batch.active, [&](uint32_t i) { return !batch.paths[i].alive; });
@@ -144,12 +141,25 @@ void Integrator::findHits(PathBatch& batch, int depth, bool coherent, TraceCount
     (depth == 0 ? counts.cameraRays : counts.bounceRays) += batch.rays.size();
 }
 
+/// A part of the batch that the lanes can hold.
+void Integrator::shadeRows(PathBatch& batch, Rows rows, int depth, std::span<const SurfacePoint> firstPoints) const {
+    const bool given = !firstPoints.empty();
+    if (!given) arrive(batch, rows, depth);
+    for (uint32_t row = rows.begin; row < rows.end; ++row) {
+        if (depth < needs_.vertexDepths) batch.vertexOf[batch.active[row]] = row;
+        batch.paths[batch.active[row]].alive = false;
+        if (given || !batch.collected[row]) shade(batch, row, depth, firstPoints);
+    }
+    shadePlain(batch, depth);
+}
+
 /// Geometry of all hits before any is shaded: what a later step reads from memory is asked for in the one before.
-void Integrator::arrive(PathBatch& batch, int depth) const {
-    prefetchSurfaces(scene_.tables, batch.hits);
+void Integrator::arrive(PathBatch& batch, Rows rows, int depth) const {
+    prefetchSurfaces(scene_.tables, std::span(batch.hits).subspan(rows.begin, rows.end - rows.begin));
     batch.geometry.resize(batch.active.size());
-    batch.collected.assign(batch.active.size(), 0);
-    for (size_t row = 0; row < batch.active.size(); ++row) {
+    batch.collected.resize(batch.active.size());
+    for (size_t row = rows.begin; row < rows.end; ++row) {
+        batch.collected[row] = 0;
         const RawHit& hit = batch.hits[row];
         if (!hit.valid()) continue;
         PathState& path = batch.paths[batch.active[row]];

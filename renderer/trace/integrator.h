@@ -34,7 +34,12 @@ public:
 private:
     static void takeHits(PathBatch& batch, std::span<const Hit> hits);
     void findHits(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const;
-    void arrive(PathBatch& batch, int depth) const;
+    /// Rows [begin, end) of the batch.
+    struct Rows {
+        uint32_t begin = 0, end = 0;
+    };
+    void shadeRows(PathBatch& batch, Rows rows, int depth, std::span<const SurfacePoint> firstPoints) const;
+    void arrive(PathBatch& batch, Rows rows, int depth) const;
     bool isDark(const InstanceRecord& instance, uint32_t primitive, int depth) const;
     void shade(PathBatch& batch, uint32_t index, int depth, std::span<const SurfacePoint> firstPoints) const;
     void shadeMiss(PathState& path, int depth, PathVertex* vertex, PathBatch& batch) const;

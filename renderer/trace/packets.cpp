@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "trace/ray_recorder.h"
 
@@ -105,18 +106,66 @@ void occludedPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<u
     }
 }
 
+/// Rays that are sorted or walk together: as many as a batch has.
+constexpr size_t kAtOnce = 1024;
+
+/// Places of rays such that those towards one octant are neighbours, else in their order.
+void sortByOctant(std::span<const BatchRay> rays, uint16_t* order) {
+    constexpr int kOctants = 8;
+    uint32_t next[kOctants + 1] = {};
+    const auto octant = [](const BatchRay& r) {
+        return (std::signbit(r.direction.x) ? 4 : 0) + (std::signbit(r.direction.y) ? 2 : 0) +
+               (std::signbit(r.direction.z) ? 1 : 0);
+    };
+    for (const BatchRay& r : rays) ++next[octant(r) + 1];
+    for (int i = 1; i < kOctants; ++i) next[i] += next[i - 1];
+    for (size_t i = 0; i < rays.size(); ++i) order[next[octant(rays[i])]++] = static_cast<uint16_t>(i);
+}
+
+/// Rays that start here and there and go anywhere, in a scene whose few nodes most of them meet: together by octant.
+template <int N>
+void intersectSorted(RTCScene scene, std::span<const BatchRay> rays, std::span<RawHit> hits,
+                     RTCIntersectContext& context) {
+    uint16_t order[kAtOnce];
+    BatchRay sorted[kAtOnce];
+    RawHit found[kAtOnce];
+    for (size_t first = 0; first < rays.size(); first += kAtOnce) {
+        const size_t count = std::min(kAtOnce, rays.size() - first);
+        sortByOctant(rays.subspan(first, count), order);
+        for (size_t i = 0; i < count; ++i) sorted[i] = rays[first + order[i]];
+        intersectPackets<N>(scene, {sorted, count}, {found, count}, context);
+        for (size_t i = 0; i < count; ++i) hits[first + order[i]] = found[i];
+    }
+}
+
+/// All rays of a call walk the tree together, node by node.
+void occludedStream(RTCScene scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked,
+                    RTCIntersectContext& context) {
+    RTCRay queries[kAtOnce];
+    for (size_t first = 0; first < rays.size(); first += kAtOnce) {
+        const size_t count = std::min(kAtOnce, rays.size() - first);
+        for (size_t i = 0; i < count; ++i) queries[i] = singleRay(rays[first + i]);
+        rtcOccluded1M(scene, &context, queries, static_cast<unsigned>(count), sizeof(RTCRay));
+        for (size_t i = 0; i < count; ++i) blocked[first + i] = queries[i].tfar < 0 ? 1 : 0;
+    }
+}
+
 }  // namespace
 
 void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits,
                    Coherence coherence) {
     assert(hits.size() >= rays.size());
     if (RayRecorder* recorder = scene.recorder()) recorder->add(false, coherence, rays);
-    const bool coherent = coherence == Coherence::Coherent;
-    EmbreeScene::Context context = makeContext(scene, rays, coherent);
-    const int width = coherent ? scene.packetWidth() : 1;
-    if (width == 16) return intersectPackets<16>(scene.handle(), rays, hits, context);
-    if (width == 8) return intersectPackets<8>(scene.handle(), rays, hits, context);
-    if (width == 4) return intersectPackets<4>(scene.handle(), rays, hits, context);
+    EmbreeScene::Context packets = makeContext(scene, rays, true);
+    if (coherence == Coherence::Coherent) {
+        const int width = scene.packetWidth();
+        if (width == 16) return intersectPackets<16>(scene.handle(), rays, hits, packets);
+        if (width == 8) return intersectPackets<8>(scene.handle(), rays, hits, packets);
+        if (width == 4) return intersectPackets<4>(scene.handle(), rays, hits, packets);
+    }
+    if (scene.strayPacketWidth() == 16) return intersectSorted<16>(scene.handle(), rays, hits, packets);
+    if (scene.strayPacketWidth() == 8) return intersectSorted<8>(scene.handle(), rays, hits, packets);
+    EmbreeScene::Context context = makeContext(scene, rays, false);
     for (size_t i = 0; i < rays.size(); ++i) {
         RTCRayHit query;
         query.ray = singleRay(rays[i]);
@@ -134,15 +183,11 @@ void occludedRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std:
     assert(blocked.size() >= rays.size());
     if (RayRecorder* recorder = scene.recorder()) recorder->add(true, coherence, rays);
     EmbreeScene::Context context = makeContext(scene, rays, false);
-    const int width = scene.shadowPacketWidth();
+    const int width = scene.strayPacketWidth();
     if (width == 16) return occludedPackets<16>(scene.handle(), rays, blocked, context);
     if (width == 8) return occludedPackets<8>(scene.handle(), rays, blocked, context);
     if (width == 4) return occludedPackets<4>(scene.handle(), rays, blocked, context);
-    for (size_t i = 0; i < rays.size(); ++i) {
-        RTCRay ray = singleRay(rays[i]);
-        rtcOccluded1(scene.handle(), &context, &ray);
-        blocked[i] = ray.tfar < 0 ? 1 : 0;
-    }
+    occludedStream(scene.handle(), rays, blocked, context);
 }
 
 }  // namespace lumi

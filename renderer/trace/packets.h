@@ -28,11 +28,13 @@ struct RawHit {
 /// How rays of a batch relate: `Coherent` ones start alike and go alike, as camera rays do.
 enum class Coherence { Coherent, Incoherent };
 
-/// Nearest hits of rays[0, n): coherent ones in the widest packets, others as singles.
+/// Nearest hits of rays[0, n): coherent ones in the widest packets, others as singles, or in small scenes
+/// (strayPacketWidth()) in packets of rays towards one octant.
 void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits,
                    Coherence coherence);
 
-/// blocked[i] = 1 if anything lies in (tmin, tmax) of ray i, else 0. In the scene's shadowPacketWidth().
+/// blocked[i] = 1 if anything lies in (tmin, tmax) of ray i, else 0. In packets in small scenes, else all rays of a call walk
+/// the tree together, which is a tenth to a quarter faster than one after the other.
 void occludedRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked,
                   Coherence coherence);
 

@@ -51,7 +51,7 @@ inline Vec3 absorptionTowards(const PathState& path, const Surface& surface, boo
 
 /// Scratch of the integrator for one batch; reused from batch to batch. Belongs to one thread at a time.
 struct PathBatch {
-    static constexpr size_t kMost = PlainLanes::kMost;
+    static constexpr size_t kMost = 1024;
 
     std::vector<PathStart> starts;  ///< the caller's, if it has no other place for them
     std::vector<PathState> paths;

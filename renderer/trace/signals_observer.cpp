@@ -39,6 +39,7 @@ SignalsObserver::SignalsObserver(const TraceScene& scene, const FrameSampling& s
     needs_.albedoDepths = albedos_ ? 1 : 0;
     needs_.normalDepths = wanted_.has(Signal::ObjectNormal) ? 1 : 0;
     needs_.shareDepths = split_ ? 1 : 0;
+    radianceOnly_ = needs_.vertexDepths == 0 && sampling.samplesPerPixel == 1 && !wanted_.has(Signal::SampleVariance);
     columns_ = (sampling.extent.width + kTile - 1) / kTile;
     rows_ = (sampling.extent.height + kTile - 1) / kTile;
     tiles_.resize(static_cast<size_t>(columns_) * static_cast<size_t>(rows_));
@@ -56,7 +57,7 @@ void SignalsObserver::beginTile(int tile) {
     if (!sums) sums = std::make_unique<TileSums>();
     // Without vertices only the radiance is written, by finished().
     if (needs_.vertexDepths > 0) sums->pixels.assign(kTile * kTile, PixelSums());
-    else sums->pixels.resize(kTile * kTile);
+    else if (!radianceOnly_) sums->pixels.resize(kTile * kTile);
     if (sampling_.samplesPerPixel > 1) {
         sums->radiance.resize(kTile * kTile);
         for (auto& sum : sums->radiance) sum.clear();
@@ -114,6 +115,7 @@ void SignalsObserver::bounce(const BounceBatch& batch) {
 
 void SignalsObserver::finished(std::span<const uint32_t> slots, std::span<const uint32_t> samples,
                                std::span<const Vec3> radiance) {
+    if (radianceOnly_) return writeRadiance(slots, radiance);
     for (size_t i = 0; i < slots.size(); ++i) {
         size_t local = 0;
         TileSums* tile = nullptr;
@@ -124,6 +126,16 @@ void SignalsObserver::finished(std::span<const uint32_t> slots, std::span<const 
                                   Colour(radiance[i]));
         if (tile->moments.empty()) continue;
         for (int c = 0; c < 3; ++c) tile->moments[local][static_cast<size_t>(c)].add(radiance[i][c]);
+    }
+}
+
+/// A slot is its pixel's place in a plane.
+void SignalsObserver::writeRadiance(std::span<const uint32_t> slots, std::span<const Vec3> radiance) {
+    if (!wanted_.has(Signal::Noisy)) return;
+    for (int c = 0; c < 3; ++c) {
+        float* noisy = signals_[Signal::Noisy].plane(c).data;
+        double* sums = signals_.noisySum().plane(c).data;
+        for (size_t i = 0; i < slots.size(); ++i) sums[slots[i]] = noisy[slots[i]] = radiance[i][c];
     }
 }
 
@@ -228,7 +240,8 @@ void SignalsObserver::writePixel(int x, int y, const TileSums& tile, size_t loca
 void SignalsObserver::endTile(int index) {
     std::unique_ptr<TileSums> tile = std::move(tiles_[static_cast<size_t>(index)]);
     const int left = index % columns_ * kTile, top = index / columns_ * kTile;
-    for (int y = top; y < std::min(top + kTile, sampling_.extent.height); ++y)
+    const int bottom = radianceOnly_ ? top : std::min(top + kTile, sampling_.extent.height);
+    for (int y = top; y < bottom; ++y)
         for (int x = left; x < std::min(left + kTile, sampling_.extent.width); ++x)
             writePixel(x, y, *tile, static_cast<size_t>((y - top) * kTile + (x - left)));
     std::lock_guard lock(mutex_);

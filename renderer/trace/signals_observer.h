@@ -20,7 +20,7 @@ namespace lumi {
 /// vertex.
 class SignalsObserver : public PathObserver {
 public:
-    static constexpr int kTile = 16;
+    static constexpr int kTile = 32;
 
     SignalsObserver(const TraceScene& scene, const FrameSampling& sampling, Signals& signals);
 
@@ -53,6 +53,7 @@ private:
     void writeGeometry(uint32_t slot, const PathVertex& vertex);
     void writeSky(uint32_t slot, const PathVertex& vertex);
     void writePixel(int x, int y, const TileSums& tile, size_t local);
+    void writeRadiance(std::span<const uint32_t> slots, std::span<const Vec3> radiance);
     void set3(Signal signal, int x, int y, const Vec3& value);
 
     const TraceScene& scene_;
@@ -61,6 +62,7 @@ private:
     const SignalSet wanted_;
     ObserverNeeds needs_;
     bool split_ = false, geometry_ = false, albedos_ = false;
+    bool radianceOnly_ = false;  ///< one sample a pixel, and nothing else of it: finished() writes it
     int columns_ = 0, rows_ = 0;
     std::vector<std::unique_ptr<TileSums>> tiles_;  ///< of tiles in work
     std::mutex mutex_;

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "math/hash.h"
+#include "trace/camera_starts.h"
 #include "trace/integrator.h"
 #include "trace/signals_observer.h"
 #include "trace/surface.h"
@@ -131,37 +132,6 @@ const PosedScene& Tracer::scene() const {
     return *impl_->scene.posed;
 }
 
-namespace {
-
-/// Camera paths of one sample of a tile's pixels.
-void makeStarts(const FrameSampling& sampling, int left, int top, uint64_t sample, std::vector<PathStart>& starts) {
-    starts.clear();
-    const int right = std::min(left + SignalsObserver::kTile, sampling.extent.width);
-    const int bottom = std::min(top + SignalsObserver::kTile, sampling.extent.height);
-    const Vec2 common = sampling.jitter == Jitter::PerFrame ? frameJitter(sample, sampling.seed) + Vec2(0.5f) : Vec2(0.5f);
-    for (int y = top; y < bottom; ++y)
-        for (int x = left; x < right; ++x) {
-            const RandomKey key{static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(sample)};
-            const bool lens = sampling.camera.aperture > 0;
-            Vec2 within = common, onLens(0.5f);
-            float time = 0;
-            if (sampling.jitter == Jitter::PerPixel || lens || sampling.shutterOpen) {
-                const SampleStream stream(sampling.path.sampler, sampling.path.haltonLoop, sampling.seed, key);
-                if (sampling.jitter == Jitter::PerPixel) within = stream.get2(dimension::kPixel);
-                if (lens) onLens = stream.get2(dimension::kLens);
-                if (sampling.shutterOpen) time = stream.get1(dimension::kTime);
-            }
-            const Vec2 place = Vec2(x, y) + within;
-            PathStart start = sampling.cameraTrack.empty() ? cameraStart(sampling.camera, place, onLens, time)
-                                                           : cameraStart(sampling.cameraAt(time), place, onLens, time);
-            start.key = key;
-            start.slot = static_cast<uint32_t>(y * sampling.extent.width + x);
-            starts.push_back(start);
-        }
-}
-
-}  // namespace
-
 bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_token stop,
                     std::span<PathObserver* const> extra) {
     assert(sampling.jitter != Jitter::Auto && sampling.samplesPerPixel > 0 &&
@@ -181,12 +151,15 @@ bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_t
             const int tile = tiles[static_cast<size_t>(index)];
             const int left = tile % frame.tileColumns() * SignalsObserver::kTile;
             const int top = tile / frame.tileColumns() * SignalsObserver::kTile;
+            const int right = std::min(left + SignalsObserver::kTile, sampling.extent.width);
+            const int bottom = std::min(top + SignalsObserver::kTile, sampling.extent.height);
             std::unique_ptr<PathBatch> batch = impl_->takeBatch();
             TraceCounts counts;
             bool whole = true;
             frame.beginTile(tile);
             for (int s = 0; s < sampling.samplesPerPixel && whole; ++s) {
-                makeStarts(sampling, left, top, sampling.firstSample + static_cast<uint64_t>(s), batch->starts);
+                makeStarts(sampling, {left, top}, {right, bottom}, sampling.firstSample + static_cast<uint64_t>(s),
+                           batch->starts);
                 whole = integrator.run(*batch, batch->starts, {}, {}, true, counts, stop);
             }
             if (whole) frame.endTile(tile), ++done;
