@@ -227,24 +227,31 @@ float EnvironmentLight::density(int column, int row) const {
            (columnCdf[column + 1] - columnCdf[column]) * static_cast<float>(rows_) * static_cast<float>(columns_);
 }
 
+EnvironmentLight::Cell EnvironmentLight::cellAt(Vec2 u) const {
+    const int row = findInterval(rowCdf_.data(), rowGuide_.data(), rows_, u.y);
+    const float* columnCdf = &columnCdf_[static_cast<size_t>(row) * static_cast<size_t>(columns_ + 1)];
+    const int column =
+        findInterval(columnCdf, &columnGuide_[static_cast<size_t>(row) * static_cast<size_t>(columns_)], columns_, u.x);
+    const float* rowCdf = &rowCdf_[static_cast<size_t>(row)];
+    return {column, row, columnCdf[column], columnCdf[column + 1], rowCdf[0], rowCdf[1]};
+}
+
 Vec3 EnvironmentLight::sample(Vec2 u, float& pdf, Vec2& place) const {
     if (!image_) {
         pdf = pdfSphere();
         place = Vec2(0);
         return sampleSphere(u);
     }
-    const int row = findInterval(rowCdf_.data(), rowGuide_.data(), rows_, u.y);
-    const float* columnCdf = &columnCdf_[static_cast<size_t>(row) * static_cast<size_t>(columns_ + 1)];
-    const int column =
-        findInterval(columnCdf, &columnGuide_[static_cast<size_t>(row) * static_cast<size_t>(columns_)], columns_, u.x);
-    const auto within = [](const float* cdf, int i, float value) {
-        const float size = cdf[i + 1] - cdf[i];
-        return size > 0 ? std::clamp((value - cdf[i]) / size, 0.0f, 0x1.fffffep-1f) : 0.5f;
+    const Cell cell = cellAt(u);
+    const auto within = [](float low, float high, float value) {
+        const float size = high - low;
+        return size > 0 ? std::clamp((value - low) / size, 0.0f, 0x1.fffffep-1f) : 0.5f;
     };
-    const Vec2 uv((static_cast<float>(column) + within(columnCdf, column, u.x)) / static_cast<float>(columns_),
-                  (static_cast<float>(row) + within(rowCdf_.data(), row, u.y)) / static_cast<float>(rows_));
+    const Vec2 uv(
+        (static_cast<float>(cell.column) + within(cell.columnLow, cell.columnHigh, u.x)) / static_cast<float>(columns_),
+        (static_cast<float>(cell.row) + within(cell.rowLow, cell.rowHigh, u.y)) / static_cast<float>(rows_));
     const SinCos phi = sinCosTurns(uv.x - 0.5f), theta = sinCosTurns(0.5f * uv.y);
-    pdf = theta.sine > 0 ? density(column, row) / (2 * kPi * kPi * theta.sine) : 0;
+    pdf = theta.sine > 0 ? density(cell.column, cell.row) / (2 * kPi * kPi * theta.sine) : 0;
     place = uv;
     // directionFromLatLong(), the sine of theta taken along.
     return toWorld({theta.sine * phi.sine, theta.cosine, -theta.sine * phi.cosine});

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scene/light.h"
+#include "trace/light_lanes.h"
 
 namespace lumi {
 
@@ -30,6 +31,14 @@ public:
         if (y > 0) __builtin_prefetch(&texels_[(y - 1) * static_cast<size_t>(width_) + x]);
     }
     float pdf(const Vec3& direction) const;
+    bool hasImage() const { return image_ != nullptr; }
+    /// The cell of the image's grid that u draws, and the bounds of the numbers that draw it.
+    struct Cell {
+        int column = 0, row = 0;
+        float columnLow = 0, columnHigh = 1, rowLow = 0, rowHigh = 1;
+    };
+    Cell cellAt(Vec2 u) const;
+    SkyGrid grid() const { return {static_cast<float>(columns_), static_cast<float>(rows_), cos_, sin_}; }
     /// Mean over the sphere of the luminance.
     float meanLuminance() const { return meanLuminance_; }
     /// About the luminance of the irradiance on a plane with unit world normal `normal`, W/m^2: exact along the image's

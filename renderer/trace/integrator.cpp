@@ -63,6 +63,7 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
     batch.active.resize(count);
     batch.plain.count = 0;
     batch.nonFinite = 0;
+    batch.absorbs = false;
     for (uint32_t i = 0; i < count; ++i) {
         const PathStart& start = starts[i];
         PathState& path = batch.paths[i];
@@ -84,6 +85,7 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
         const bool wantsVertices = depth < needs_.vertexDepths;
         if (wantsVertices) batch.vertices.assign(batch.active.size(), PathVertex()), batch.vertexOf.resize(count);
         batch.pending.clear();
+        batch.splits.clear();
         batch.shadowRays.clear();
         const auto rows = static_cast<uint32_t>(batch.active.size());
         for (uint32_t first = 0; first < rows; first += PlainLanes::kMost)
@@ -233,6 +235,7 @@ void Integrator::shade(PathBatch& batch, uint32_t row, int depth, std::span<cons
     if (!mayDiffuse || !maySpecular) bsdf.keep(mayDiffuse, maySpecular);
     if (usesLightSamples_ && !bsdf.isDelta()) sampleLight(batch, index, surface, frame, bsdf, depth, vertex);
     path.alive = continuePath(path, surface, frame, bsdf, wo, depth, vertex);
+    batch.absorbs |= !isBlack(path.absorption);
 }
 
 void Integrator::shadeMiss(PathState& path, int depth, PathVertex* vertex, PathBatch& batch) const {

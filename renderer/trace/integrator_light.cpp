@@ -53,7 +53,8 @@ void Integrator::sampleLight(PathBatch& batch, uint32_t index, const Surface& su
         ray.tmax = length;
     }
     // With the throughput of now: the path goes on before its shadow rays are traced.
-    batch.pending.push_back({index, path.throughput * sum, diffuse, specular, light.sky, light.skyPlace});
+    batch.pending.push_back({index, path.throughput * sum, light.sky, light.skyPlace});
+    if (vertex) batch.splits.push_back({diffuse, specular});
     batch.shadowRays.push_back(ray);
 }
 
@@ -86,20 +87,20 @@ void Integrator::addLights(PathBatch& batch, int depth) const {
         if (!batch.blocked[i] && batch.pending[i].sky) sky.prefetch(batch.pending[i].skyPlace);
     for (size_t i = 0; i < batch.pending.size(); ++i) {
         if (batch.blocked[i]) continue;
-        PendingLight light = batch.pending[i];
-        const auto scale = [&](auto factor) {
-            light.contribution *= factor, light.diffuse *= factor, light.specular *= factor;
-        };
-        if (light.sky) scale(sky.radianceAt(light.skyPlace));
-        const float largest = maxComponent(light.contribution);
-        if (settings_.clamp && depth > 0 && largest > settings_.clampRadiance) scale(settings_.clampRadiance / largest);
-        add(batch, batch.paths[light.path], light.contribution);
+        const PendingLight& light = batch.pending[i];
+        Vec3 factor = light.sky ? sky.radianceAt(light.skyPlace) : Vec3(1);
+        if (settings_.clamp && depth > 0) {
+            const float largest = maxComponent(light.contribution * factor);
+            if (largest > settings_.clampRadiance) factor *= settings_.clampRadiance / largest;
+        }
+        const Vec3 contribution = light.contribution * factor;
+        add(batch, batch.paths[light.path], contribution);
         if (depth >= needs_.vertexDepths) continue;
         PathVertex& vertex = batch.vertices[batch.vertexOf[light.path]];
         vertex.lightVisible = true;
-        if (!isFinite(light.contribution)) continue;
-        vertex.directDiffuse = light.diffuse;
-        vertex.directSpecular = light.specular;
+        if (!isFinite(contribution)) continue;
+        vertex.directDiffuse = batch.splits[i].diffuse * factor;
+        vertex.directSpecular = batch.splits[i].specular * factor;
     }
 }
 

@@ -1,4 +1,6 @@
 // Vertices on plain surfaces: collected while a batch is shaded, and then shaded together by kernels.
+#include <cmath>
+
 #include "math/hash.h"
 #include "trace/albedo_table.h"
 #include "trace/integrator.h"
@@ -174,24 +176,15 @@ void Integrator::samplePlainLights(PathBatch& batch) const {
         batch.receivers[i] = {lanes.position.get<Vec3>(i), lanes.geometricNormal.get<Vec3>(i), path(i).ray.time,
                               LightReceiver::Facing::Front, settings_.lightSampling};
     scene_.lights.choose({batch.receivers, count}, lanes.lightX, lanes.lightY, {batch.choices, count});
+    scene_.lights.samplePoints({batch.choices, count}, {batch.receivers, count}, batch.lights, lanes);
+    if (settings_.strategy == DirectStrategy::Bsdf)
+        for (int i = 0; i < lanes.count; ++i)
+            if (lanes.lightWeighs[i] > 0) lanes.lightPdf[i] = 0;
+    if (!batch.absorbs) return;
     for (int i = 0; i < lanes.count; ++i) {
-        lanes.lightPdf[i] = 0;
-        if (lanes.smooth[i] > 0 && lanes.diffuseProbability[i] == 0) continue;
-        LightSample& light = batch.lights[i];
-        if (!scene_.lights.samplePoint(batch.choices[i], batch.receivers[i], {lanes.lightPointX[i], lanes.lightPointY[i]},
-                                       light))
-            continue;
-        if (settings_.strategy == DirectStrategy::Bsdf && light.hittable) continue;
-        // The sky's radiance is looked up when the shadow ray has found it: most samples never wait for that memory.
-        Vec3 radiance = light.sky ? Vec3(1) : light.radiance;
         const Vec3& absorption = path(i).absorption;
-        if (!isBlack(absorption) && std::isfinite(light.distance)) radiance *= transmittance(absorption, light.distance);
-        lanes.lightPdf[i] = light.pdf;
-        lanes.lightDirection.set(i, light.direction);
-        lanes.lightTarget.set(i, light.target);
-        lanes.lightRadiance.set(i, radiance);
-        lanes.lightDistance[i] = light.distance;
-        lanes.lightWeighs[i] = light.hittable ? 1.0f : 0.0f;
+        if (lanes.lightPdf[i] == 0 || isBlack(absorption) || !std::isfinite(lanes.lightDistance[i])) continue;
+        lanes.lightRadiance.set(i, lanes.lightRadiance.get<Vec3>(i) * transmittance(absorption, lanes.lightDistance[i]));
     }
 }
 
@@ -205,16 +198,17 @@ void Integrator::pendPlainLights(PathBatch& batch, int depth) const {
         }
         const uint32_t index = batch.active[lanes.row[i]];
         const PathState& path = batch.paths[index];
-        const LightSample& light = batch.lights[i];
+        const uint32_t entry = batch.choices[i].entry;
         if (depth < needs_.vertexDepths) {
             PathVertex& vertex = batch.vertices[lanes.row[i]];
             vertex.lightSampled = true;
-            vertex.lightPosition = light.position;
-            vertex.lightInfinite = !std::isfinite(light.distance);
-            vertex.light = light.light;
+            vertex.lightPosition = batch.lights.position.get<Vec3>(i);
+            vertex.lightInfinite = !std::isfinite(lanes.lightDistance[i]);
+            vertex.light = static_cast<int>(entry);
+            batch.splits.push_back({lanes.lightDiffuse.get<Vec3>(i), lanes.lightSpecular.get<Vec3>(i)});
         }
-        batch.pending.push_back({index, lanes.lightContribution.get<Vec3>(i), lanes.lightDiffuse.get<Vec3>(i),
-                                 lanes.lightSpecular.get<Vec3>(i), light.sky, light.skyPlace});
+        batch.pending.push_back({index, lanes.lightContribution.get<Vec3>(i), scene_.lights.isSky(entry),
+                                 Vec2(batch.lights.skyU[i], batch.lights.skyV[i])});
         batch.shadowRays.push_back({lanes.start.get<Vec3>(i), 0, lanes.shadowDirection.get<Vec3>(i), lanes.shadowLength[i],
                                     path.ray.time, pcgHash(path.hash + static_cast<uint32_t>(2 * depth + 1))});
     }

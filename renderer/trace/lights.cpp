@@ -58,7 +58,8 @@ LightTreePoint treePoint(const LightReceiver& r) {
 }  // namespace
 
 Lights::Choice Lights::choose(const LightReceiver& receiver, Vec2 pick) const {
-    if (receiver.sampling == LightSampling::Power || entries_.size() == 1) {
+    if (entries_.size() == 1) return {0, 1};
+    if (receiver.sampling == LightSampling::Power) {
         const uint32_t entry = picks_.sample(pick);
         return {entry, picks_.probability(entry)};
     }

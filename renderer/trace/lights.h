@@ -11,6 +11,9 @@
 
 namespace lumi {
 
+struct LightLanes;
+struct PlainLanes;
+
 /// A point (or direction) of a light as chosen for a shading point.
 struct LightSample {
     Vec3 direction{0};   ///< unit, from the shading point
@@ -58,6 +61,12 @@ public:
                 std::span<Choice> choices) const;
     /// A point of the chosen light by `u`. False if nothing can reach the receiver that way.
     bool samplePoint(const Choice& choice, const LightReceiver& receiver, Vec2 u, LightSample& out) const;
+
+    /// samplePoint() for each of the lanes: the light's columns of `lanes`, pdf 0 where nothing can reach the receiver. The
+    /// sky's radiance is 1, to be multiplied by what its place has. Choice i and receiver i are those of lane i.
+    void samplePoints(std::span<const Choice> choices, std::span<const LightReceiver> receivers, LightLanes& lights,
+                      PlainLanes& lanes) const;
+    bool isSky(uint32_t entry) const { return !environment_.black() && entry + 1 == entries_.size(); }
 
     /// Chooses a light by `pick` and a point of it by `u`. False if nothing can reach the receiver that way.
     bool sample(const LightReceiver& receiver, Vec2 pick, Vec2 u, LightSample& out) const;
@@ -131,6 +140,9 @@ private:
     float infiniteImportance(const LightReceiver& receiver) const;
     float treeShare(const LightReceiver& receiver, float elsewhere) const;
 
+    static void placeTriangle(const Triangle& triangle, LightLanes& lights, int lane);
+    static void placePoint(const Point& point, LightLanes& lights, int lane);
+    uint32_t placeLight(const Choice& choice, Vec2 u, LightLanes& lights, int lane) const;
     bool sampleTriangle(const Triangle& triangle, const LightReceiver& receiver, Vec2 u, LightSample& out) const;
     bool sampleBody(const BodyRecord& body, const LightReceiver& receiver, Vec2 u, LightSample& out) const;
     bool samplePunctual(const Point& point, const LightReceiver& receiver, LightSample& out) const;

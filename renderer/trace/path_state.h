@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "trace/light_lanes.h"
 #include "trace/light_receiver.h"
 #include "trace/lights.h"
 #include "trace/observer.h"
@@ -33,10 +34,14 @@ struct PathState {
 /// A light sample that waits for its shadow ray.
 struct PendingLight {
     uint32_t path = 0;
-    Vec3 contribution{0};          ///< to the path, throughput included
-    Vec3 diffuse{0}, specular{0};  ///< radiance towards wo if nothing blocks it, MIS-weighted
-    bool sky = false;              ///< all three are still to be multiplied by the sky's radiance at `skyPlace`
+    Vec3 contribution{0};  ///< to the path, throughput included
+    bool sky = false;      ///< it and its split are still to be multiplied by the sky's radiance at `skyPlace`
     Vec2 skyPlace{0};
+};
+
+/// What the vertex is told of it: radiance towards wo if nothing blocks it, MIS-weighted.
+struct PendingSplit {
+    Vec3 diffuse{0}, specular{0};
 };
 
 inline Vec3 transmittance(const Vec3& absorption, float distance) {
@@ -63,9 +68,11 @@ struct PathBatch {
     PlainLanes plain;                          ///< vertices on plain surfaces
     LightReceiver receivers[PlainLanes::kMost];  ///< of the lanes, and the next two
     Lights::Choice choices[PlainLanes::kMost];
-    LightSample lights[PlainLanes::kMost];
+    LightLanes lights;
+    bool absorbs = false;                      ///< some path is or was in a solid that absorbs
     PlainTaps taps[PlainLanes::kMost];         ///< of the first lanes, whose textures are looked up
     std::vector<PendingLight> pending;
+    std::vector<PendingSplit> splits;  ///< of the pending ones, if vertices are wanted
     std::vector<BatchRay> shadowRays;
     std::vector<uint8_t> blocked;
     uint64_t nonFinite = 0;
