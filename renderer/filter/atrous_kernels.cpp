@@ -1,7 +1,7 @@
 #include "filter/atrous_kernels.h"
 
-#include "filter/atrous_taps.h"
 #include "filter/edge_stopping_lanes.h"
+#include "filter/spline.h"
 
 namespace lumi::LUMI_ISA {
 namespace {

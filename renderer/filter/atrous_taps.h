@@ -1,12 +1,13 @@
 #pragma once
 #include <cstddef>
 
+#include "filter/spline.h"
+
 /// The taps of à-trous kernels over rows of planes. Include only from kernel files: each instruction set compiles its own.
 namespace lumi {
 namespace {
 
 constexpr int kBlock = 256;  ///< pixels of a row whose sums stay in the first-level cache
-constexpr float kSpline[5] = {1.0f / 16, 1.0f / 4, 3.0f / 8, 1.0f / 4, 1.0f / 16};  ///< B3
 
 /// One tap of a window: its offset in pixels and in memory, and the part of the row whose neighbour lies in the image.
 struct TapSpan {

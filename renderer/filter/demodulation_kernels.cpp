@@ -2,20 +2,12 @@
 
 #include <cmath>
 
+#include "filter/combined_albedo.h"
+
 namespace lumi::LUMI_ISA {
 namespace {
 
-constexpr float kLeastAlbedo = 0.01f;  ///< as the signals have it
 constexpr float kLargest = 3.402823466e38f;
-
-/// The lobes' albedos together. An albedo of exactly 1 beside one that is smaller is the mark of an undivided lobe.
-inline float combinedAlbedo(float diffuse, float specular) {
-    float sum = diffuse + specular;
-    sum = specular == 1.0f ? diffuse : sum;
-    sum = diffuse == 1.0f ? specular : sum;
-    sum = sum < 1.0f ? sum : 1.0f;  // NaN too
-    return sum > kLeastAlbedo ? sum : kLeastAlbedo;
-}
 
 void divide(const DemodulationRow& row) {
     const float* __restrict diffuse = row.diffuseAlbedo;

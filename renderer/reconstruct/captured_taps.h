@@ -6,6 +6,14 @@
 
 namespace lumi {
 
+/// The tap of those who drop what is no number.
+inline Tap droppedTap() {
+    return {.name = "dropped",
+            .channels = "Y",
+            .colourMap = "magma",
+            .help = "1 where a value of the input was NaN or infinite and was dropped"};
+}
+
 /// The taps of a module's last completed run. Those of a run that is under way become visible when it is complete.
 class CapturedTaps {
 public:

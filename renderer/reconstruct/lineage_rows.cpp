@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "filter/edge_weights.h"
+#include "filter/spline.h"
 
 namespace lumi {
 namespace {
-
-constexpr float kSpline[5] = {1.0f / 16, 1.0f / 4, 3.0f / 8, 1.0f / 4, 1.0f / 16};  ///< B3
 
 std::string refusalText(uint8_t refused) {
     if (refused == kTapUnused) return "unused: the point lies on a pixel";
@@ -41,29 +40,32 @@ void forWindow(Extent2 extent, Pixel p, int step, Body body) {
 
 }  // namespace
 
-void addHistoryRows(Lineage& lineage, const Signals& signals, const TemporalHistory* previous, const TemporalSettings& settings) {
+void addHistoryRows(Lineage& lineage, const Signals& signals, const TemporalHistory* previous, const TemporalSettings& settings,
+                    const std::string& stage, const Image* loss) {
     const Pixel p = lineage.pixel;
     if (!previous) {
-        lineage.rows.push_back({"history", p, 1, "this frame's sample; there is no frame before"});
+        lineage.rows.push_back({stage, p, 1, "this frame's sample; there is no frame before"});
         return;
     }
     const Reprojection reprojection(signals, previous->surface, settings.reprojection);
     const ReprojectedTaps taps = reprojection.taps(p.x, p.y);
     float length = 1;
     for (size_t k = 0; k < static_cast<size_t>(taps.count); ++k) length += taps.weight[k] * previous->length.data()[taps.index[k]];
-    const float alpha = taps.count == 0 ? 1 : std::max(settings.colourAlpha, settings.arithmeticWarmUp ? 1 / length : 0);
-    lineage.rows.push_back({"history", p, alpha, "this frame's sample"});
+    float alpha = taps.count == 0 ? 1 : std::max(settings.colourAlpha, settings.arithmeticWarmUp ? 1 / length : 0);
+    const float lambda = loss && taps.count > 0 ? loss->at(0, p.x, p.y) : 0;
+    alpha += (1 - alpha) * lambda;
+    lineage.rows.push_back({stage, p, alpha, lambda > 0 ? fmt::format("this frame's sample; lambda {:.3f}", lambda) : "this frame's sample"});
     const int width = signals.extent().width;
     const auto placeOf = [&](size_t k) { return Pixel{taps.index[k] % width, taps.index[k] / width}; };
     size_t kept = 0;
     for (size_t k = 0; k < 4; ++k) {
         const bool counts = taps.refusals[k] == kTapKept;
         const Pixel at = counts ? placeOf(kept) : Pixel{taps.x0 + static_cast<int>(k & 1), taps.y0 + static_cast<int>(k >> 1)};
-        lineage.rows.push_back({"history", at, counts ? (1 - alpha) * taps.weight[kept] : 0, counts ? "kept" : refusalText(taps.refusals[k])});
+        lineage.rows.push_back({stage, at, counts ? (1 - alpha) * taps.weight[kept] : 0, counts ? "kept" : refusalText(taps.refusals[k])});
         kept += counts;
     }
     for (size_t k = 0; taps.wide && k < static_cast<size_t>(taps.count); ++k)
-        lineage.rows.push_back({"history", placeOf(k), (1 - alpha) * taps.weight[k], "kept by the 3x3 fall-back"});
+        lineage.rows.push_back({stage, placeOf(k), (1 - alpha) * taps.weight[k], "kept by the 3x3 fall-back"});
 }
 
 void addAtrousRows(Lineage& lineage, const std::string& stage, const SurfaceGuide& guide, const AtrousSettings& settings,

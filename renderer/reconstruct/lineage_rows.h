@@ -8,9 +8,10 @@ namespace lumi {
 
 /// Rows of a Lineage for the stages that several modules share. Parts are normalised, so that those of a stage sum to 1.
 
-/// The stage `history`: this frame's sample and the taps of the frame before, those that were refused with why.
-/// `previous` may be null: there is no frame before.
-void addHistoryRows(Lineage& lineage, const Signals& signals, const TemporalHistory* previous, const TemporalSettings& settings);
+/// The stage `history`, or what it is called: this frame's sample and the taps of the frame before, those that were refused
+/// with why. `previous` may be null: there is no frame before. `loss`: lambda, how much of the history is given up.
+void addHistoryRows(Lineage& lineage, const Signals& signals, const TemporalHistory* previous, const TemporalSettings& settings,
+                    const std::string& stage = "history", const Image* loss = nullptr);
 
 /// A level of SVGF's wavelet, of the component `illumination`, its input: eqs. 1 to 5.
 void addAtrousRows(Lineage& lineage, const std::string& stage, const SurfaceGuide& guide, const AtrousSettings& settings,

@@ -8,10 +8,7 @@ namespace lumi {
 namespace {
 
 std::vector<Tap> withDropped(std::vector<Tap> taps) {
-    taps.push_back({.name = "dropped",
-                    .channels = "Y",
-                    .colourMap = "magma",
-                    .help = "1 where a value of the input was NaN or infinite and was dropped"});
+    taps.push_back(droppedTap());
     return taps;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "math/kernel_math.h"
+#include "math/sin_cos.h"
 
 /// Arithmetic of one lane for kernels: branch-free, so that loops over lanes vectorise. Include only from kernel files:
 /// everything here has internal linkage, each instruction set compiles its own copy.
@@ -50,27 +51,14 @@ LUMI_LANE LaneFrame frameAround(Lane3 n) {
 LUMI_LANE Lane3 toLocal(const LaneFrame& f, Lane3 v) { return {dot(v, f.x), dot(v, f.y), dot(v, f.z)}; }
 LUMI_LANE Lane3 toWorld(const LaneFrame& f, Lane3 v) { return f.x * v.x + f.y * v.y + f.z * v.z; }
 
-/// Sine and cosine of 2 pi `turns`, as sinCosTurns().
-LUMI_LANE void sinCosOfTurns(float turns, float& sine, float& cosine) {
-    const int32_t quarter = static_cast<int32_t>(turns * 4 + (turns >= 0 ? 0.5f : -0.5f));
-    const float x = (turns - 0.25f * static_cast<float>(quarter)) * (2 * kLanePi), x2 = x * x;
-    const float s0 = x * (1 + x2 * (-1.0f / 6 + x2 * (1.0f / 120 + x2 * (-1.0f / 5040 + x2 * (1.0f / 362880)))));
-    const float c0 = 1 + x2 * (-0.5f + x2 * (1.0f / 24 + x2 * (-1.0f / 720 + x2 * (1.0f / 40320))));
-    const bool swapped = (quarter & 1) != 0;
-    const float s = swapped ? c0 : s0, c = swapped ? s0 : c0;
-    sine = (quarter & 2) != 0 ? -s : s;
-    cosine = ((quarter + 1) & 2) != 0 ? -c : c;
-}
-
 /// Directions around +Z in proportion to the cosine, as sampleCosineHemisphere() [Shirley 1997].
 LUMI_LANE Lane3 cosineHemisphere(float u, float v) {
     const float a = 2 * u - 1, b = 2 * v - 1;
     const bool wide = std::fabs(a) > std::fabs(b);
     const float radius = wide ? a : b, other = wide ? b : a;
     const float part = 0.125f * (other / (radius == 0 ? 1.0f : radius));
-    float sine, cosine;
-    sinCosOfTurns(wide ? part : 0.25f - part, sine, cosine);
-    const float x = radius * cosine, y = radius * sine;
+    const SinCos angle = sinCosTurns(wide ? part : 0.25f - part);
+    const float x = radius * angle.cosine, y = radius * angle.sine;
     return {x, y, std::sqrt(most(0.0f, 1 - x * x - y * y))};
 }
 

@@ -312,12 +312,11 @@ void light(Lanes& lanes, const AlbedoView& view, const PlainSettings& settings) 
 
 /// A facet normal seen from `wo`, as Ggx::sampleVisibleNormal() [Dupuy & Benyoub 2023].
 LUMI_LANE Lane3 visibleNormalAt(Lane3 wo, float alpha, float u, float v) {
-    float sine, cosine;
-    sinCosOfTurns(v, sine, cosine);
+    const SinCos phi = sinCosTurns(v);
     const Lane3 stretched = unit({alpha * wo.x, alpha * wo.y, wo.z});
     const float z = (1 - u) * (1 + stretched.z) - stretched.z;
     const float r = std::sqrt(most(0.0f, 1 - z * z));
-    const Lane3 h = stretched + Lane3{r * cosine, r * sine, z};
+    const Lane3 h = stretched + Lane3{r * phi.cosine, r * phi.sine, z};
     return unit({alpha * h.x, alpha * h.y, most(h.z, 1e-7f)});
 }
 

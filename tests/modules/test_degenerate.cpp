@@ -20,23 +20,46 @@ protected:
     }
 };
 
+/// Pixels but p whose values differ.
+int countDifferent(const Image& a, const Image& b, Pixel p) {
+    int count = 0;
+    for (int y = 0; y < a.height(); ++y)
+        for (int x = 0; x < a.width(); ++x) {
+            if (Pixel{x, y} == p) continue;
+            bool same = true;
+            for (int c = 0; c < a.channels(); ++c) same = same && a.at(c, x, y) == b.at(c, x, y);
+            count += !same;
+        }
+    return count;
+}
+
 TEST_P(Degenerate, ADroppedPixelIsCountedAndShownAndHarmsNoOther) {
     const Extent2 extent{31, 19};
+    const Pixel at{12, 7};
     ModuleHarness harness(extent);
+    const auto frameWith = [&](FrameNumber frame, float value) {
+        Signals signals = harness.trace(frame);
+        if (frame == 2)
+            for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::Indirect, Signal::Emission}) signals[signal].at(1, at.x, at.y) = value;
+        return signals;
+    };
     for (const float bad : {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity}) {
-        const auto module = make(extent);
+        const auto module = make(extent), clean = make(extent);
+        const auto taps = module->taps();
+        const bool counts = std::any_of(taps.begin(), taps.end(), [](const Tap& tap) { return tap.name == "dropped"; });
+        EXPECT_TRUE(counts || !isOneOf({"svgf", "eaw", "temporal", "taa", "asvgf", "aaf", "sbf"}));
         for (FrameNumber frame = 0; frame < 6; ++frame) {
-            Signals signals = harness.trace(frame);
-            if (frame == 2)
-                for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::Indirect, Signal::Emission}) signals[signal].at(1, 12, 7) = bad;
-            const Image image = harness.image(*module, frame, signals);
+            const Image image = harness.image(*module, frame, frameWith(frame, bad));
             EXPECT_LE(countNonFinite(image), isOneOf({"none", "accumulate"}) ? 1 : 0) << "frame " << frame;
+            // What is dropped counts as 0: no other pixel is other than if it had been.
+            EXPECT_EQ(countDifferent(image, harness.image(*clean, frame, frameWith(frame, 0)), at), 0) << "frame " << frame;
+            if (!counts) continue;
             const Image& dropped = module->tap("dropped");
-            if (dropped.empty()) continue;
+            ASSERT_EQ(dropped.extent(), extent);
             double count = 0;
             for (size_t i = 0; i < dropped.size(); ++i) count += dropped.data()[i];
             EXPECT_EQ(count, frame == 2 ? 1 : 0) << "frame " << frame;
-            EXPECT_EQ(dropped.at(0, 12, 7), frame == 2 ? 1 : 0);
+            EXPECT_EQ(dropped.at(0, at.x, at.y), frame == 2 ? 1 : 0);
         }
     }
 }

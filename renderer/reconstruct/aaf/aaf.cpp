@@ -47,46 +47,43 @@ bool AafModule::filter(const FrameContext& context, const Step& step, Image& out
     }
     if (!integrate(context, step)) return false;
     const auto measured = context.timer.measure("axis-aligned filter");
-    chooseWidths();
-    blur(context.signals, context.camera, true, direct_, half_);
+    const Image& direct = temporal_ ? step.next.components[0].colour : frame().direct;
+    captured().keep("integratedDirect", direct);
+    chooseWidths(temporal_ ? step.next.components[2].colour : occlusion_);
+    blur(context.signals, context.camera, true, direct, half_);
     if (context.stop.stop_requested()) return false;
     blur(context.signals, context.camera, false, half_, filtered_);
     captured().keep("filteredDirect", filtered_);
-    remodulate(frame(), filtered_, &indirect_, out);
+    remodulate(frame(), filtered_, temporal_ ? &step.next.components[1].colour : &frame().indirect, out);
     return !context.stop.stop_requested();
 }
 
 bool AafModule::integrate(const FrameContext& context, const Step& step) {
     const auto measured = context.timer.measure("temporal filter");
-    direct_ = frame().direct;
-    indirect_ = frame().indirect;
     if (!temporal_) {
         step.next = {};  // a later frame starts its history anew
         for (const char* tap : {"reprojection", "historyLength"})
             if (Image* empty = captured().target(tap)) empty->reset(extent(), 1);
-    } else {
-        if (!filterTemporally(context.signals, temporalSettings_, {&frame().direct, &frame().indirect, &occlusion_}, step.previous,
-                              step.next, captured().target("reprojection"), context.stop))
-            return false;
-        captured().keep("historyLength", step.next.length);
-        if (Lineage* lineage = inspected()) addHistoryRows(*lineage, context.signals, step.previous, temporalSettings_);
-        direct_ = step.next.components[0].colour;
-        indirect_ = step.next.components[1].colour;
-        occlusion_ = step.next.components[2].colour;
+        return true;
     }
-    captured().keep("integratedDirect", direct_);
+    if (!filterTemporally(context.signals, temporalSettings_, {&frame().direct, &frame().indirect, &occlusion_}, step.previous,
+                          step.next, captured().target("reprojection"), context.stop))
+        return false;
+    captured().keep("historyLength", step.next.length);
+    if (Lineage* lineage = inspected()) addHistoryRows(*lineage, context.signals, step.previous, temporalSettings_);
     return true;
 }
 
 /// beta of each pixel, 0 where nothing was blocked.
-void AafModule::chooseWidths() {
+void AafModule::chooseWidths(const Image& occlusion) {
     if (width_.extent() != extent()) width_.reset(extent(), 1);
     Image* shown = captured().target("occlusion");
     if (shown) shown->reset(extent(), 1);
     for (int64_t i = 0; i < extent().area(); ++i) {
-        const float found = occlusion_.plane(1).data[i];
-        const float slope = found > 1e-3f ? occlusion_.plane(0).data[i] / found : 0;  // mean over the frames that had one
-        width_.data()[i] = occlusion_.plane(2).data[i] * slope / overlap_;
+        // Means over the frames that had a blocker.
+        const float found = occlusion.plane(1).data[i], perFound = found > 1e-3f ? 1 / found : 0;
+        const float slope = occlusion.plane(0).data[i] * perFound, deviation = occlusion.plane(2).data[i] * perFound;
+        width_.data()[i] = deviation * slope / overlap_;
         if (shown) shown->data()[i] = slope;
     }
     captured().keep("filterWidth", width_);
@@ -109,13 +106,12 @@ void AafModule::blur(const Signals& signals, const CameraPose& camera, bool alon
                 const int i = alongRows ? x + k : x, j = alongRows ? y : y + k;
                 if (k == 0 || i < 0 || j < 0 || i >= extent().width || j >= extent().height) continue;
                 if (object.at(0, i, j) != object.at(0, x, y)) continue;
-                float distance = 0, cosine = 0;
+                float distance = 0;
                 for (int c = 0; c < 3; ++c) {
                     const float d = position.at(c, i, j) - position.at(c, x, y);
                     distance += d * d;
-                    cosine += normal.at(c, i, j) * normal.at(c, x, y);
                 }
-                const float w = cosine > 0.9f ? std::exp(-distance / (2 * beta * beta)) : 0;
+                const float w = facesAlike(normal, {x, y}, {i, j}) ? std::exp(-distance / (2 * beta * beta)) : 0;
                 if (!(w > 0)) continue;
                 weights += w;
                 for (int c = 0; c < 3; ++c) shift[c] += w * (in.at(c, i, j) - in.at(c, x, y));
@@ -127,7 +123,7 @@ void AafModule::blur(const Signals& signals, const CameraPose& camera, bool alon
 
 size_t AafModule::byteCount() const {
     size_t sum = ScreenFilter::byteCount();
-    for (const Image* image : {&measured_, &occlusion_, &width_, &direct_, &indirect_, &half_, &filtered_}) sum += image->bytes();
+    for (const Image* image : {&measured_, &occlusion_, &width_, &half_, &filtered_}) sum += image->bytes();
     return sum;
 }
 

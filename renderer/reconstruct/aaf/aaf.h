@@ -29,7 +29,7 @@ public:
 private:
     bool filter(const FrameContext&, const Step&, Image& out) override;
     bool integrate(const FrameContext&, const Step&);
-    void chooseWidths();
+    void chooseWidths(const Image& occlusion);
     void blur(const Signals& signals, const CameraPose& camera, bool alongRows, const Image& in, Image& out) const;
 
     bool temporal_ = true;
@@ -37,7 +37,7 @@ private:
     int windowRadius_ = 4, maxRadius_ = 32;
     float overlap_ = 3;  ///< k
     Image measured_, occlusion_, width_;
-    Image direct_, indirect_, half_, filtered_;
+    Image half_, filtered_;
 };
 
 }  // namespace lumi

@@ -1,11 +1,11 @@
 #include "reconstruct/aaf/occlusion.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <map>
 
 #include "base/parallel.h"
+#include "reconstruct/surface_points.h"
 #include "trace/path_lighting.h"
 #include "trace/tracer.h"
 
@@ -39,16 +39,13 @@ struct Pixels {
 };
 
 Pixels pixelsOf(const FrameContext& context, int top, int bottom) {
-    const IdImage& surface = context.signals.ids(Signal::Surface);
     const int width = context.signals.extent().width;
     const uint64_t first = context.sampling.firstSample;
     const Vec2 jitter = context.sampling.jitter == Jitter::PerFrame ? frameJitter(first, context.sampling.seed) : Vec2(0);
     Pixels pixels;
     for (int y = top; y < bottom; ++y)
         for (int x = 0; x < width; ++x) {
-            SurfacePoint point{surface.at(0, x, y), surface.at(1, x, y),
-                               {std::bit_cast<float>(surface.at(2, x, y)), std::bit_cast<float>(surface.at(3, x, y))},
-                               context.sampling.timeOf(x, y, first)};
+            SurfacePoint point = surfacePointAt(context, x, y);
             if (!context.tracer.has(point)) point = {};
             const PathStart start = cameraStart(context.camera, Vec2(x, y) + Vec2(0.5f) + jitter, Vec2(0.5f), point.time);
             const float distance = point.valid() ? glm::length(context.tracer.position(point) - start.ray.origin) : 0;
@@ -104,6 +101,12 @@ bool measureOcclusion(const FrameContext& context, Image& out) {
     return true;
 }
 
+bool facesAlike(const Image& normal, Pixel p, Pixel q) {
+    float cosine = 0;
+    for (int c = 0; c < 3; ++c) cosine += normal.at(c, p.x, p.y) * normal.at(c, q.x, q.y);
+    return cosine > 0.9f;
+}
+
 void gatherOcclusion(const Signals& signals, int radius, const Image& in, Image& out) {
     const Extent2 extent = in.extent();
     if (out.extent() != extent) out.reset(extent, 3);
@@ -111,13 +114,10 @@ void gatherOcclusion(const Signals& signals, int radius, const Image& in, Image&
     parallelFor(extent.height, [&](int64_t row) {
         const int y = static_cast<int>(row);
         for (int x = 0; x < extent.width; ++x) {
-            float least = kInfinity, size = in.at(2, x, y);
+            float least = kInfinity, size = 0;
             for (int j = std::max(y - radius, 0); j <= std::min(y + radius, extent.height - 1); ++j)
                 for (int i = std::max(x - radius, 0); i <= std::min(x + radius, extent.width - 1); ++i) {
-                    if (in.at(1, i, j) == 0 || !(in.at(0, i, j) < least)) continue;
-                    float cosine = 0;
-                    for (int c = 0; c < 3; ++c) cosine += normal.at(c, x, y) * normal.at(c, i, j);
-                    if (!(cosine > 0.9f)) continue;
+                    if (in.at(1, i, j) == 0 || !(in.at(0, i, j) < least) || !facesAlike(normal, {x, y}, {i, j})) continue;
                     least = in.at(0, i, j);
                     size = in.at(2, i, j);
                 }

@@ -11,9 +11,12 @@ namespace lumi {
 /// stopped.
 bool measureOcclusion(const FrameContext& context, Image& out);
 
-/// Least R among the blocked pixels of the window of `radius` that see a surface alike, 1 in G where there is one, and B of
-/// the pixel itself or else of the window: the greatest d2 has the sharpest shadow. `in` and `out` as above.
+/// Least R among the blocked pixels of the window of `radius` that see a surface alike (the greatest d2 has the sharpest
+/// shadow), 1 in G, and B of the light that it belongs to; 0 in all three where there is none. `in` and `out` as above.
 void gatherOcclusion(const Signals& signals, int radius, const Image& in, Image& out);
+
+/// Their normals are within 26 degrees of each other.
+bool facesAlike(const Image& normal, Pixel p, Pixel q);
 
 inline SignalSet occlusionSignals() {
     return {Signal::Surface, Signal::ObjectId, Signal::Position, Signal::Normal, Signal::InverseDepth};

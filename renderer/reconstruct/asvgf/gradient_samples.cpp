@@ -1,18 +1,17 @@
 #include "reconstruct/asvgf/gradient_samples.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "base/parallel.h"
+#include "filter/combined_albedo.h"
 #include "math/hash.h"
 #include "math/transform.h"
+#include "reconstruct/surface_points.h"
 #include "trace/path_lighting.h"
 
 namespace lumi {
 namespace {
-
-constexpr float kLeastAlbedo = 0.01f;  ///< as filter/demodulation.h
 
 /// Points to shade, as the tracer takes them.
 struct Batch {
@@ -33,17 +32,13 @@ struct Batch {
     }
 };
 
-/// What a lobe is divided by counts as the signals have it; see DemodulatedFrame.
-float combined(float diffuse, float specular) {
-    const bool noDiffuse = !(diffuse >= kLeastAlbedo), noSpecular = !(specular >= kLeastAlbedo);
-    const float sum = noDiffuse && noSpecular ? 1 : (noDiffuse ? 0 : diffuse) + (noSpecular ? 0 : specular);
-    return std::clamp(sum, kLeastAlbedo, 1.0f);
-}
+/// A lobe's albedo as the signals store it.
+float stored(float albedo) { return albedo >= kLeastAlbedo ? albedo : 1.0f; }
 
 ComponentLuminance luminanceOf(const PathLighting& lighting) {
     Vec3 direct, indirect;
     for (int c = 0; c < 3; ++c) {
-        const float albedo = combined(lighting.albedo[c], lighting.specularAlbedo[c]);
+        const float albedo = combinedAlbedo(stored(lighting.albedo[c]), stored(lighting.specularAlbedo[c]));
         direct[c] = lighting.direct[c] / albedo;
         indirect[c] = lighting.indirect[c] / albedo;
     }
@@ -72,7 +67,6 @@ float luminanceAt(const Image& rgb, int x, int y) {
 
 std::vector<GradientSample> drawGradientSamples(const FrameContext& context, const Image& direct, const Image& indirect) {
     const Extent2 extent = context.signals.extent(), strata = strataOf(extent);
-    const IdImage& surface = context.signals.ids(Signal::Surface);
     std::vector<GradientSample> samples(static_cast<size_t>(strata.area()));
     for (int64_t i = 0; i < strata.area(); ++i) {
         const int left = static_cast<int>(i % strata.width) * kStratum, top = static_cast<int>(i / strata.width) * kStratum;
@@ -82,9 +76,7 @@ std::vector<GradientSample> drawGradientSamples(const FrameContext& context, con
         GradientSample& sample = samples[static_cast<size_t>(i)];
         const uint64_t first = context.sampling.firstSample;
         sample.key = {static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(first)};
-        sample.point = {surface.at(0, x, y), surface.at(1, x, y),
-                        {std::bit_cast<float>(surface.at(2, x, y)), std::bit_cast<float>(surface.at(3, x, y))},
-                        context.sampling.timeOf(x, y, first)};
+        sample.point = surfacePointAt(context, x, y);
         sample.luminance = {luminanceAt(direct, x, y), luminanceAt(indirect, x, y)};
     }
     if (context.signals.samplesPerPixel() == 1) return samples;

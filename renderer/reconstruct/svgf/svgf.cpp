@@ -50,7 +50,11 @@ bool SvgfModule::integrate(const FrameContext& context, const Step& step) {
                           captured().target("reprojection"), context.stop, loss))
         return false;
     keepIntegrated(captured(), step.next);
-    if (Lineage* lineage = inspected()) addHistoryRows(*lineage, context.signals, step.previous, parameters_.temporal);
+    if (Lineage* lineage = inspected()) {
+        if (loss.empty()) addHistoryRows(*lineage, context.signals, step.previous, parameters_.temporal);
+        for (size_t c = 0; c < loss.size(); ++c)
+            addHistoryRows(*lineage, context.signals, step.previous, parameters_.temporal, c == 0 ? "direct, history" : "indirect, history", loss[c]);
+    }
     for (size_t c = 0; c < kComponents; ++c) {
         input_[c].reset(extent());
         // The integrated colour moves on; handOver() gives the history what it is to keep.

@@ -1,7 +1,7 @@
 #pragma once
 #include "filter/taa.h"
 #include "frame/history.h"
-#include "reconstruct/module.h"
+#include "reconstruct/captured_taps.h"
 
 namespace lumi {
 
@@ -12,8 +12,10 @@ public:
     Jitter preferredJitter() const override { return Jitter::PerFrame; }
     void describe(ParameterVisitor& v) override { settings_.describe(v); }
     void resize(Extent2 extent) override;
-    void forget() override { history_.clear(); }
+    void forget() override;
     RunResult run(const FrameContext&, Image& out) override;
+    std::span<const Tap> taps() const override { return taps_.declared(); }
+    const Image& tap(const std::string& name) const override;
     size_t byteCount() const override;
 
 private:
@@ -21,6 +23,7 @@ private:
     TaaSettings settings_;
     FrameHistory<Image> history_;
     Image scratch_;
+    CapturedTaps taps_{{droppedTap()}};
 };
 
 }  // namespace lumi

@@ -84,7 +84,7 @@ TEST(CrossBilateral, EachFilterAndItsRiskAreTheirDefinitions) {
     setIsa(best);
 }
 
-// On a flat wall the widest filter errs least; across a sharp bright edge that only light has, a narrow one.
+// On a flat wall the widest filter errs least.
 TEST(CrossBilateral, ChoosesWideFiltersWhereNothingIsLost) {
     Scene scene(2);
     Random random(5);
@@ -105,6 +105,34 @@ TEST(CrossBilateral, ChoosesWideFiltersWhereNothingIsLost) {
     }
     EXPECT_GT(choice, 2);
     EXPECT_LT(std::sqrt(error), 0.25 * 0.3 / std::sqrt(3.0));
+}
+
+// Beside a sharp edge that only light has, narrower filters err less than they do far from it.
+TEST(CrossBilateral, ChoosesNarrowFiltersBesideAnEdgeOfLight) {
+    constexpr int kEdge = 35;
+    Scene scene(3);
+    Random random(6);
+    scene.albedo.fill(0.5f);
+    for (int y = 0; y < kExtent.height; ++y)
+        for (int x = 0; x < kExtent.width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                scene.signals[Signal::Normal].at(c, x, y) = c == 2;
+                scene.signals[Signal::InverseDepth].at(0, x, y) = 0.5f;
+                scene.light.at(c, x, y) = (x < kEdge ? 0.5f : 2.0f) + 0.3f * random.between(-1, 1);
+            }
+    SureBank bank;
+    Image out;
+    ASSERT_TRUE(chooseBySure(scene.signals, scene.albedo, {}, scene.light, bank, out, {}));
+    const auto meanOver = [&](auto valueAt, int left, int right) {
+        double sum = 0;
+        for (int y = 0; y < kExtent.height; ++y)
+            for (int x = left; x < right; ++x) sum += valueAt(x, y);
+        return sum / ((right - left) * kExtent.height);
+    };
+    const auto choice = [&](int x, int y) { return double(bank.choice.at(0, x, y)); };
+    EXPECT_LT(meanOver(choice, kEdge - 2, kEdge + 2), meanOver(choice, 4, 16) - 0.5);
+    const auto error = [&](int x, int y) { return std::pow(out.at(1, x, y) - (x < kEdge ? 0.5 : 2.0), 2); };
+    EXPECT_LT(std::sqrt(meanOver(error, kEdge - 2, kEdge + 2)), 0.25) << "of a step of 1.5: it stays sharp";
 }
 
 }  // namespace
