@@ -13,7 +13,8 @@ struct Asked {
     std::map<std::string, Image> before, now;  ///< taps of the frame before, and of this one
 };
 
-Asked ask(const char* id, Pixel pixel) {
+/// `dims`: the lights go down in the last frame.
+Asked ask(const char* id, Pixel pixel, bool dims = false) {
     ModuleHarness harness(kExtent);
     const auto module = findModule(id).make();
     module->resize(kExtent);
@@ -21,6 +22,7 @@ Asked ask(const char* id, Pixel pixel) {
     for (FrameNumber frame = 0; frame < 4; ++frame) {
         const float shift = 0.02f * static_cast<float>(frame);
         Image image;
+        if (dims && frame == 3) harness.dimLights(true);
         harness.inspected = frame == 3 ? std::optional(pixel) : std::nullopt;
         EXPECT_EQ(harness.run(*module, {frame, {.cut = frame == 0, .camera = frame > 0}, shift, false},
                               harness.trace(frame, shift, frame > 0 ? shift - 0.02f : 0), image), RunResult::Completed);
@@ -67,6 +69,31 @@ TEST(LineageOf, SvgfGivesEachLevel) {
         EXPECT_NEAR(parts, 1, 1e-5);
         EXPECT_NEAR(sum, asked.now.at("directLevel0").at(1, pixel.x, pixel.y), 1e-4);
     }
+}
+
+// Lambda takes from the history what it gives to the sample, of each component by itself.
+TEST(LineageOf, AsvgfTellsWhatItGaveUp) {
+    int gaveUp = 0;
+    for (const Pixel pixel : {Pixel{20, 30}, Pixel{40, 25}, Pixel{32, 44}})
+        for (const std::string component : {"direct", "indirect"}) {
+            const Asked asked = ask("asvgf", pixel, true);
+            const float lambda = asked.now.at(component + "Loss").at(0, pixel.x, pixel.y);
+            double sum = 0, parts = 0, sample = 0;
+            for (const Lineage::Row& row : asked.lineage.rows) {
+                if (row.stage != component + ", history") continue;
+                const bool isSample = row.verdict.find("sample") != std::string::npos;
+                if (isSample) sample = row.weight;
+                const std::string upper = component == "direct" ? "demodulatedDirect" : "demodulatedIndirect";
+                const Image& from = isSample ? asked.now.at(upper) : asked.before.at(component + "Level1");
+                if (row.weight > 0) sum += row.weight * from.at(1, row.at.x, row.at.y);
+                parts += row.weight;
+            }
+            EXPECT_NEAR(parts, 1, 1e-5);
+            EXPECT_NEAR(sum, asked.now.at(component + "Level0").at(1, pixel.x, pixel.y), 1e-4);
+            EXPECT_GE(sample, lambda);
+            gaveUp += lambda > 0.5f;
+        }
+    EXPECT_GT(gaveUp, 0);
 }
 
 TEST(LineageOf, EawGivesEachLevel) {

@@ -1,0 +1,96 @@
+// What light samples met, as axis-aligned filtering asks: a plate over a floor, under lights near and infinitely far.
+#include <gtest/gtest.h>
+
+#include "reconstruct/aaf/occlusion.h"
+#include "support/transport_scene.h"
+
+namespace lumi::test {
+namespace {
+
+constexpr Extent2 kExtent{48, 32};
+constexpr float kPlateHeight = 0.75f;
+
+/// From above: the light's -Z is the world's -Y.
+Mat4 downwards(const Vec3& from) {
+    Mat4 m = translation(from);
+    m[1] = Vec4(0, 0, -1, 0);
+    m[2] = Vec4(0, 1, 0, 0);
+    return m;
+}
+
+struct Measured {
+    Image image;
+    Signals signals;
+};
+
+Measured measure(const Material& floor, const Light& light, const Vec3& from) {
+    TinyScene tiny;
+    tiny.add(floorMesh(), floor);
+    tiny.add(floorMesh(1), lambert(0.5f), translation({0, kPlateHeight, 0}));
+    tiny.addLight(light, downwards(from));
+    const auto posed = tiny.pose();
+    Tracer tracer;
+    tracer.bind(posed);
+    const FrameSampling sampling = frameOf(lookFrom({0, 1.5f, 4}, {0, 0, 0}, 40), kExtent, 1, plainPaths(2), SignalSet::all());
+    Measured measured;
+    EXPECT_TRUE(tracer.sample(sampling, measured.signals));
+    StageTimer timer;
+    const TapSet none;
+    const FrameContext context{0, measured.signals, *posed, sampling.camera, sampling.camera, {}, none, tracer, sampling, timer, {}};
+    EXPECT_TRUE(measureOcclusion(context, measured.image));
+    return measured;
+}
+
+/// The floor under the plate's middle is in full shadow; the floor far from it is lit.
+bool isUnder(const Signals& signals, int x, int y) {
+    const Image& p = signals[Signal::Position];
+    return p.at(1, x, y) < 0.01f && std::abs(p.at(0, x, y)) < 0.35f && std::abs(p.at(2, x, y)) < 0.35f && signals.ids(Signal::ObjectId).at(0, x, y) == 1;
+}
+
+TEST(Occlusion, OfASunIsTheBlockersDistanceAndTheSunsAngle) {
+    Light sun;
+    sun.type = LightType::Directional;
+    sun.angleDeg = 8;
+    Material glossy;
+    glossy.roughness = 0.3f;
+    // Surfaces that are diffuse and no more are shaded in another way than others.
+    for (const Material& floor : {lambert(0.5f), glossy}) {
+        const Measured measured = measure(floor, sun, {0, 0, 0});
+        int under = 0, lit = 0;
+        for (int y = 0; y < kExtent.height; ++y)
+            for (int x = 0; x < kExtent.width; ++x) {
+                if (isUnder(measured.signals, x, y)) {
+                    ++under;
+                    ASSERT_EQ(measured.image.at(1, x, y), 1) << x << ' ' << y;
+                    ASSERT_NEAR(measured.image.at(0, x, y), kPlateHeight, 0.003f) << "a cosine of 4 degrees more";
+                }
+                if (measured.signals[Signal::Position].at(2, x, y) < -2) lit += measured.image.at(1, x, y) == 0;
+                // A disk of directions: half its radius, along one of its dimensions.
+                const bool onFloor = measured.signals.ids(Signal::ObjectId).at(0, x, y) == 1;
+                ASSERT_NEAR(measured.image.at(2, x, y), onFloor ? 0.5f * radians(4) : measured.image.at(2, x, y), 0.05f * radians(4));
+            }
+        EXPECT_GT(under, 10);
+        EXPECT_GT(lit, 10);
+    }
+}
+
+TEST(Occlusion, OfALampIsTheRatioOfDistances) {
+    Light lamp;
+    lamp.type = LightType::Rectangle;
+    lamp.size = Vec2(0.2f);
+    const float height = 3;
+    const Measured measured = measure(lambert(0.5f), lamp, {0, height, 0});
+    int under = 0;
+    for (int y = 0; y < kExtent.height; ++y)
+        for (int x = 0; x < kExtent.width; ++x) {
+            if (!isUnder(measured.signals, x, y)) continue;
+            ++under;
+            // By similar triangles d1/d2 is the same for every point of a horizontal light.
+            ASSERT_EQ(measured.image.at(1, x, y), 1);
+            ASSERT_NEAR(measured.image.at(0, x, y), height / (height - kPlateHeight) - 1, 1e-3f);
+        }
+    EXPECT_GT(under, 10);
+}
+
+}  // namespace
+}  // namespace lumi::test
