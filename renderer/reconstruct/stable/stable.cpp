@@ -40,8 +40,9 @@ RunResult StableModule::run(const FrameContext& context, Image& out) {
     if (context.stop.stop_requested()) return RunResult::Stopped;
     taps_.begin(context.wantedTaps);
     const auto step = history_.begin(context.frame, context.changes.cut);
+    static const SampleSet kNone;
     SampleSet& samples = step.next.samples;
-    if (!placeSamples(context, step.previous ? step.previous->samples : SampleSet(), samples)) return RunResult::Stopped;
+    if (!placeSamples(context, step.previous ? step.previous->samples : kNone, samples)) return RunResult::Stopped;
     VerificationCounts counts;
     {
         const auto measured = context.timer.measure("verification");
