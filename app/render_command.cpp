@@ -50,6 +50,13 @@ public:
         ++frames_;
         rays_ += frame.rays.total();
         nonFinite_ += frame.rays.nonFinite;
+        const bool traced = frame.rays.total() > 0;
+        for (const auto& [instance, rays] : frame.runRays) {
+            nonFinite_ += rays.nonFinite;
+            if (traced) continue;  // the few that a filter traces beside the frame's
+            rays_ += rays.total();
+            traceMs_ += frame.runMs.at(instance);
+        }
         for (const auto& [stage, ms] : frame.stagesMs) {
             if (!stages_.count(stage)) order_.push_back(stage);
             stages_[stage].push_back(ms);

@@ -136,8 +136,11 @@ void FrameEngine::adoptFreshInstances(const std::vector<std::string>& active, bo
 
 SignalSet FrameEngine::wantedSignals(const FrameRequest& request) {
     SignalSet wanted = request.signals | shownSignals(request.document);
-    wanted.add(Signal::Noisy);  // what is shown if a module fails
-    for (const std::string& name : request.activeInstances()) wanted |= running(name).module->reads();
+    for (const std::string& name : request.activeInstances()) {
+        wanted |= running(name).module->reads();
+        if (running(name).failed) wanted.add(Signal::Noisy);
+    }
+    if (!wanted.empty()) wanted.add(Signal::Noisy);  // what is shown if a module fails
     return wanted;
 }
 
@@ -189,9 +192,15 @@ bool FrameEngine::traceSignals(const FrameRequest& request, const CameraPose& pr
             return true;
         }
     }
-    const auto measured = timer.measure("trace");
     const std::shared_ptr<Signals> signals = pool_.take();
     tracer_.resetCounts();
+    if (asked.wanted.empty()) {
+        signals->reset(asked.extent, {}, asked.samplesPerPixel);
+        next.signals = signals;
+        next.rays = {};
+        return true;
+    }
+    const auto measured = timer.measure("trace");
     if (!tracer_.sample(asked, *signals, stop)) return false;
     next.signals = signals;
     next.rays = tracer_.counts();
@@ -250,7 +259,15 @@ bool FrameEngine::runModule(const std::string& name, const FrameContext& context
         }
         current.failed = true;
     }
-    out = context.signals[Signal::Noisy];
+    if (context.signals.available().has(Signal::Noisy)) {
+        out = context.signals[Signal::Noisy];
+        return true;
+    }
+    FrameSampling sampling = context.sampling;
+    sampling.wanted = {Signal::Noisy};
+    Signals raw;
+    if (!tracer_.sample(sampling, raw, context.stop)) return false;
+    out = raw[Signal::Noisy];
     return true;
 }
 

@@ -55,8 +55,8 @@ struct FrameOutput {
     bool rests() const;
 };
 
-/// Runs frames, one after the other, on the calling thread and the pool: pose, trace what someone reads, run the
-/// modules. Both the interactive session and `render` drive it; what it makes depends only on the requests.
+/// Runs frames, one after the other, on the calling thread and the pool: pose, trace what someone reads (nothing, if the
+/// modules place their own rays and no view shows a signal), run the modules. Both the interactive session and `render` drive it; what it makes depends only on the requests.
 class FrameEngine {
 public:
     enum class OnModuleError { Throw, ShowRawFrame };
