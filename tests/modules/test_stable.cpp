@@ -1,0 +1,348 @@
+// Stable ray tracing over frames: density, sticking to what deforms, convergence, and what vanishes, shrinks or is not there.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "reconstruct/martin2002/martin2002.h"
+#include "reconstruct/stable/stable.h"
+#include "reconstruct/stable/verification.h"
+#include "reconstruct/supersampling/supersampling.h"
+#include "support/module_harness.h"
+#include "support/transport_scene.h"
+
+namespace lumi::test {
+namespace {
+
+/// Frames of one module in posed scenes of the test's own.
+class Rig {
+public:
+    explicit Rig(Extent2 extent) : extent_(extent) { path.maxDepth = 2; }
+
+    Image run(Module& module, FrameNumber frame, const std::shared_ptr<const PosedScene>& posed, const Camera& camera, Changes changes) {
+        posed_ = posed;
+        tracer.bind(posed);
+        changes.cut |= frame == 0;
+        const CameraPose pose = poseCamera(camera, extent_);
+        if (changes.cut) previous_ = pose;
+        FrameSampling sampling = frameOf(camera, extent_, 1, path, {});
+        sampling.frame = static_cast<uint32_t>(frame);
+        TapSet wanted;
+        for (const Tap& tap : module.taps()) wanted.insert(tap.name);
+        StageTimer timer;
+        Image out;
+        EXPECT_EQ(module.run({frame, signals_, *posed, pose, previous_, changes, wanted, tracer, sampling, timer, {}, {}}, out), RunResult::Completed);
+        EXPECT_EQ(countNonFinite(out), 0);
+        previous_ = pose;
+        return out;
+    }
+
+    Tracer tracer;
+    PathSettings path;
+
+private:
+    Extent2 extent_;
+    Signals signals_;
+    CameraPose previous_;
+    std::shared_ptr<const PosedScene> posed_;
+};
+
+template <class T>
+void set(T& module, const char* id, const ParameterValue& value) {
+    setParameter([&](ParameterVisitor& v) { module.describe(v); }, id, value);
+}
+
+/// Balls over a floor under a lamp and a dim sky.
+TinyScene balls(float scale = 1) {
+    TinyScene tiny;
+    tiny.add(floorMesh(), lambert(Vec3(0.6f, 0.5f, 0.4f)));
+    for (int i = 0; i < 5; ++i)
+        tiny.add(sphereMesh(0.4f, 24, 12), lambert(0.2f + 0.15f * static_cast<float>(i)),
+                 translation(Vec3(static_cast<float>(i) - 2, 0.4f, 0.5f * static_cast<float>(i % 2))) * scaling(Vec3(scale)));
+    Light lamp;
+    lamp.type = LightType::Sphere;
+    lamp.radius = 0.3f;
+    lamp.radiance = Vec3(20);
+    tiny.addLight(lamp, translation(Vec3(1, 4, 2)));
+    tiny.scene.environment.constant = Vec3(0.2f);
+    return tiny;
+}
+
+Camera view(float shift = 0) { return lookFrom(Vec3(shift, 1.5f, 4), Vec3(shift, 0.4f, 0)); }
+
+/// Share of pixels without a visible sample in their 3 x 3.
+double lonelyShare(const SampleSet& samples) {
+    const Extent2 extent = samples.extent;
+    int64_t lonely = 0;
+    for (int y = 0; y < extent.height; ++y)
+        for (int x = 0; x < extent.width; ++x) {
+            uint32_t visible = 0;
+            for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, extent.height - 1); ++ny)
+                for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, extent.width - 1); ++nx)
+                    visible |= subpixel::visible(samples.words[static_cast<size_t>(ny * extent.width + nx)]);
+            lonely += visible == 0;
+        }
+    return static_cast<double>(lonely) / static_cast<double>(extent.area());
+}
+
+double meanVisible(const SampleSet& samples) {
+    int64_t sum = 0;
+    for (const uint32_t word : samples.words) sum += std::popcount(subpixel::visible(word));
+    return static_cast<double>(sum) / static_cast<double>(samples.extent.area());
+}
+
+TEST(Stable, KeepsItsDensityWhileTheCameraMoves) {
+    const Extent2 extent{120, 80};
+    const auto posed = balls().pose();
+    for (const float density : {1.0f, 2.0f, 4.0f}) {
+        Rig rig(extent);
+        StableModule module;
+        module.resize(extent);
+        set(module, "density", density);
+        for (FrameNumber frame = 0; frame < 12; ++frame) {
+            rig.run(module, frame, posed, view(0.04f * static_cast<float>(frame)), {.camera = true});
+            const SampleSet& samples = module.samples();
+            ASSERT_EQ(samples.size(), samples.first.back());
+            for (size_t p = 0; p < samples.words.size(); ++p) {
+                const uint32_t count = samples.first[p + 1] - samples.first[p];
+                ASSERT_EQ(count, static_cast<uint32_t>(std::popcount(subpixel::occupied(samples.words[p]))));
+                ASSERT_LE(count, 16u);
+                for (uint32_t i = samples.first[p]; i < samples.first[p + 1]; ++i)
+                    ASSERT_EQ(static_cast<size_t>(samples.places[i].y) * 120 + static_cast<size_t>(samples.places[i].x), p);
+            }
+        }
+        EXPECT_NEAR(meanVisible(module.samples()), density, 0.15 * density);
+        EXPECT_LT(lonelyShare(module.samples()), 0.02);
+    }
+}
+
+// The samples of a still view stay, and their light converges to the mean over all paths of just these samples.
+TEST(Stable, AStillViewConvergesLikeTheMeanOfItsSamples) {
+    const Extent2 extent{24, 16};
+    const auto posed = balls().pose();
+    Rig rig(extent);
+    rig.path = plainPaths(2);
+    StableModule module;
+    module.resize(extent);
+    set(module, "tone-mapped", false);
+    const auto squares = [](const Image& a, const Image& b) {
+        double sum = 0;
+        for (size_t i = 0; i < a.size(); ++i) sum += sqr(a.data()[i] - b.data()[i]);
+        return sum;
+    };
+    Image at16, at64, at;
+    constexpr FrameNumber kFrames = 1500;
+    std::vector<uint32_t> words;
+    for (FrameNumber frame = 0; frame < kFrames; ++frame) {
+        at = rig.run(module, frame, posed, view(), {});
+        if (frame == 8) words = module.samples().words;
+        if (frame == 16) at16 = at;
+        if (frame == 64) at64 = at;
+    }
+    EXPECT_EQ(module.samples().words, words);
+    EXPECT_EQ(module.convergence().samples, static_cast<uint64_t>(kFrames));
+    const double ratio = squares(at16, at) / squares(at64, at);  // 4, less what `at` itself errs
+    EXPECT_GT(ratio, 3);
+    EXPECT_LT(ratio, 5.5);
+}
+
+TEST(Stable, SamplesStayOnWhatDeforms) {
+    const Extent2 extent{96, 54};
+    MessageLog log;
+    const std::shared_ptr<const Scene> scene = loadScene(LUMISCOPE_SOURCE_DIR "/scenes/parade.json", log);
+    const Camera camera = cameraAt(*scene, 0, 0);
+    const auto before = poseScene(scene, {1, 1, 1});
+    const auto after = poseScene(scene, {1.1f, 1.1f, 1}, before.get());
+    Rig rig(extent);
+    StableModule module;
+    module.resize(extent);
+    rig.run(module, 0, before, camera, {});
+    const SampleSet old = module.samples();
+    rig.run(module, 1, after, camera, {.objects = true});
+    const SampleSet& now = module.samples();
+    const CameraPose pose = poseCamera(camera, extent);
+    std::set<std::array<uint32_t, 4>> known;
+    for (const SampleLocation& l : old.locations) known.insert({l.instance, l.primitive, std::bit_cast<uint32_t>(l.u), std::bit_cast<uint32_t>(l.v)});
+    int deforming = 0, moved = 0;
+    for (size_t i = 0; i < now.size(); ++i) {
+        const SampleLocation& l = now.locations[i];
+        if (now.lights[i].age == 0 || l.isNew() || l.isSky() || !after->instances[l.instance].deformed) continue;
+        ++deforming;
+        EXPECT_TRUE(known.count({l.instance, l.primitive, std::bit_cast<uint32_t>(l.u), std::bit_cast<uint32_t>(l.v)}));
+        // Where the vertices of now put it, found without the tracer.
+        const auto& mesh = *scene->instances[l.instance].mesh;
+        const auto place = [&](const PosedScene& posed) {
+            const UVec3 t = mesh.triangles[l.primitive];
+            const auto& p = posed.instances[l.instance].deformed->positions;
+            return Vec2(pose.project(transformPoint(posed.instances[l.instance].worldFromObject, p[t.x] * (1 - l.u - l.v) + p[t.y] * l.u + p[t.z] * l.v)));
+        };
+        EXPECT_LT(glm::distance(now.places[i], place(*after)), 0.01f);
+        moved += glm::distance(place(*after), place(*before)) > 0.05f;
+    }
+    EXPECT_GT(deforming, 20);
+    EXPECT_GT(moved, 5);
+}
+
+TEST(Stable, WhatVanishesOrShrinksToNothingLeavesNoSample) {
+    const Extent2 extent{60, 40};
+    Rig rig(extent);
+    StableModule module;
+    module.resize(extent);
+    TinyScene without;
+    without.add(floorMesh(), lambert(0.5f));
+    without.scene.environment.constant = Vec3(0.2f);
+    rig.run(module, 0, balls().pose(), view(), {});
+    rig.run(module, 1, balls(0).pose(), view(), {.objects = true});
+    rig.run(module, 2, balls(0).pose(), view(), {.objects = true});
+    for (const SampleLocation& l : module.samples().locations)
+        if (!l.isNew() && !l.isSky()) {
+            EXPECT_TRUE(l.instance == 0 || l.instance > 5) << l.instance;
+        }
+    rig.run(module, 3, without.pose(), view(), {.objects = true});
+    EXPECT_NEAR(meanVisible(module.samples()), 1, 0.3);
+    for (const SampleLocation& l : module.samples().locations)
+        if (!l.isNew() && !l.isSky()) {
+            EXPECT_EQ(l.instance, 0u);
+        }
+    rig.run(module, 4, balls().pose(), view(), {.objects = true});
+    rig.run(module, 5, balls().pose(), view(), {.objects = true});
+    int onBalls = 0;
+    for (const SampleLocation& l : module.samples().locations) onBalls += !l.isNew() && !l.isSky() && l.instance >= 1 && l.instance <= 5;
+    EXPECT_GT(onBalls, 50);  // what appears in front occludes all samples of its pixels, and takes one of each
+}
+
+TEST(Stable, SkyHasSamplesThatTurnWithTheCamera) {
+    const Extent2 extent{60, 40};
+    Rig rig(extent);
+    StableModule module;
+    module.resize(extent);
+    TinyScene nothing;
+    nothing.scene.environment.constant = Vec3(0.25f, 0.5f, 0.75f);
+    const auto posed = nothing.pose();
+    Image image;
+    for (FrameNumber frame = 0; frame < 4; ++frame)
+        image = rig.run(module, frame, posed, lookFrom(Vec3(0), Vec3(0.01f * static_cast<float>(frame), 0, -1)), {.camera = true});
+    int old = 0;
+    for (const SampleLight& light : module.samples().lights) old += light.age == 3;
+    EXPECT_GT(old, 2000);
+    for (size_t p = 0; p < 2400; ++p) ASSERT_NEAR(image.plane(2).data[p], 0.75f, 1e-5f);
+}
+
+TEST(Stable, ATeleportStartsAnew) {
+    const Extent2 extent{60, 40};
+    Rig rig(extent), other(extent);
+    StableModule module, fresh;
+    module.resize(extent), fresh.resize(extent);
+    const auto posed = balls().pose();
+    rig.run(module, 0, posed, view(), {});
+    rig.run(module, 1, posed, view(0.1f), {.camera = true});
+    const Image a = rig.run(module, 2, posed, view(2), {.cut = true}), b = other.run(fresh, 2, posed, view(2), {.cut = true});
+    EXPECT_EQ(a, b);
+}
+
+TEST(Stable, AnOrthographicCameraWorks) {
+    const Extent2 extent{60, 40};
+    Rig rig(extent);
+    StableModule module;
+    module.resize(extent);
+    Camera camera = view();
+    camera.projection = Projection::Orthographic;
+    camera.yMag = 1.5f;
+    int kept = 0;
+    for (FrameNumber frame = 0; frame < 4; ++frame) {
+        camera.eye.x += 0.02f, camera.target.x += 0.02f;
+        rig.run(module, frame, balls().pose(), camera, {.camera = true});
+    }
+    for (const SampleLight& light : module.samples().lights) kept += light.age == 3;
+    EXPECT_GT(kept, 1500);
+}
+
+// The balancing changes which rays are traced together, and nothing else.
+TEST(Stable, BatchesMakeNoDifferenceButInIdleLanes) {
+    const Extent2 extent{60, 40};
+    Rig a(extent), b(extent);
+    StableModule dense, perPixel;
+    dense.resize(extent), perPixel.resize(extent);
+    set(perPixel, "batches", std::string("per-pixel"));
+    const auto posed = balls().pose();
+    for (FrameNumber frame = 0; frame < 6; ++frame) {
+        const Camera camera = view(0.05f * static_cast<float>(frame));
+        ASSERT_EQ(a.run(dense, frame, posed, camera, {.camera = true}), b.run(perPixel, frame, posed, camera, {.camera = true}));
+        EXPECT_EQ(dense.verification().rays, dense.verification().lanes);
+        EXPECT_EQ(dense.verification().rays, perPixel.verification().rays);
+    }
+    EXPECT_GT(perPixel.verification().lanes, perPixel.verification().rays * 5 / 4);
+}
+
+TEST(Supersampling, IsTheMeanOfItsRays) {
+    const Extent2 extent{30, 20};
+    Rig rig(extent);
+    const auto posed = balls().pose();
+    const Camera camera = view();
+    for (const int spp : {1, 3, 6}) {
+        SupersamplingModule module;
+        module.resize(extent);
+        set(module, "spp", spp);
+        set(module, "filter", std::string("box"));
+        set(module, "tone-mapped", false);
+        const Image image = rig.run(module, 2, posed, camera, {.cut = true});
+        for (int y = 0; y < 20; y += 3)
+            for (int x = 0; x < 30; x += 3) {
+                std::vector<PathStart> starts;
+                std::set<int> columns, rows;
+                for (int s = 0; s < spp; ++s) {
+                    const Vec2 within = SupersamplingModule::placeInPixel(s, spp, Vec2(0));
+                    columns.insert(static_cast<int>(within.x * static_cast<float>(spp)));
+                    rows.insert(static_cast<int>(within.y * static_cast<float>(spp)));
+                    starts.push_back(cameraStart(poseCamera(camera, extent), Vec2(x, y) + within, Vec2(0.5f), 0));
+                    starts.back().key = {static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(2 * spp + s)};
+                    starts.back().slot = static_cast<uint32_t>(s);
+                }
+                EXPECT_EQ(columns.size() + rows.size(), static_cast<size_t>(2 * spp));  // rooks
+                std::vector<Vec3> radiance(starts.size());
+                ASSERT_TRUE(rig.tracer.tracePaths(starts, rig.path, 0, radiance, {}));
+                Vec3 mean(0);
+                for (const Vec3& r : radiance) mean += r / static_cast<float>(spp);
+                for (int c = 0; c < 3; ++c) ASSERT_NEAR(image.at(c, x, y), mean[c], 1e-5f * (1 + mean[c])) << spp;
+            }
+    }
+}
+
+TEST(Martin2002, AveragesThreeFrames) {
+    const Extent2 extent{30, 20};
+    Rig rig(extent);
+    Martin2002Module module;
+    module.resize(extent);
+    const auto posed = balls().pose();
+    std::vector<Image> single;
+    for (int frame = 0; frame < 5; ++frame) {
+        const Image image = rig.run(module, frame, posed, view(0.1f * static_cast<float>(frame)), {.camera = true});
+        single.push_back(module.tap("unfiltered"));
+        const int count = std::min(frame + 1, 3);
+        for (size_t i = 0; i < image.size(); ++i) {
+            float mean = 0;
+            for (int k = 0; k < count; ++k) mean += single[static_cast<size_t>(frame - k)].data()[i];
+            ASSERT_NEAR(image.data()[i], mean / static_cast<float>(count), 1e-5f) << frame;
+        }
+    }
+}
+
+// Of the samples that land in a pixel the closest stays; pixels that none lands in get one through their middle.
+TEST(Martin2002, KeepsOneSampleAPixel) {
+    const Extent2 extent{60, 40};
+    Rig rig(extent);
+    Martin2002Module module;
+    module.resize(extent);
+    const auto posed = balls().pose();
+    rig.run(module, 0, posed, view(), {});
+    for (size_t p = 0; p < 2400; ++p) ASSERT_EQ(module.tap("verdicts").data()[p], 0);
+    rig.run(module, 1, posed, view(0.07f), {.camera = true});
+    int counts[3] = {};
+    for (size_t p = 0; p < 2400; ++p) ++counts[static_cast<int>(module.tap("verdicts").data()[p])];
+    EXPECT_GT(counts[0], 10);
+    EXPECT_GT(counts[1], 1500);
+}
+
+}  // namespace
+}  // namespace lumi::test
