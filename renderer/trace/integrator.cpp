@@ -72,7 +72,7 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
                     start.ray.fromCamera};
         path.cone = start.cone;
         path.stream = SampleStream(settings_.sampler, settings_.haltonLoop, seed_, start.key);
-        path.hash = hashCombine(hashCombine(start.key.x, start.key.y), start.key.sample, seed_);
+        path.hash = pathHash(start.key, seed_);
         path.slot = start.slot, path.sample = start.key.sample;
         batch.active[i] = i;
     }

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "math/hash.h"
 #include "trace/light_lanes.h"
 #include "trace/light_receiver.h"
 #include "trace/lights.h"
@@ -14,6 +15,11 @@
 
 namespace lumi {
 
+/// Names a path in stochastic transparency.
+inline uint32_t pathHash(const RandomKey& key, uint32_t seed) {
+    return hashCombine(hashCombine(key.x, key.y), key.sample, seed);
+}
+
 /// One path on its way.
 struct PathState {
     BatchRay ray;
@@ -24,7 +30,7 @@ struct PathState {
     float scatterPdf = 0;     ///< per solid angle; 0 after a delta lobe
     Vec3 absorption{0};       ///< 1/m, of the solid the path is in
     SampleStream stream;
-    uint32_t hash = 0;  ///< names the path in stochastic transparency
+    uint32_t hash = 0;  ///< see pathHash()
     uint32_t slot = 0, sample = 0;
     int diffuseCount = 0, specularCount = 0;
     bool alive = true;

@@ -242,25 +242,27 @@ bool Tracer::shade(std::span<const SurfacePoint> points, std::span<const Vec3> w
 
 namespace {
 
-void toBatchRays(std::span<const Ray> rays, std::vector<BatchRay>& out, size_t firstId) {
+void toBatchRays(std::span<const Ray> rays, std::vector<BatchRay>& out, size_t first, std::span<const uint32_t> ids = {}) {
     out.resize(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) {
         const Ray& r = rays[i];
-        out[i] = {r.origin, r.tmin, r.direction, r.tmax, r.time, pcgHash(static_cast<uint32_t>(firstId + i)), r.fromCamera};
+        const uint32_t id = ids.empty() ? pcgHash(static_cast<uint32_t>(first + i)) : ids[first + i];
+        out[i] = {r.origin, r.tmin, r.direction, r.tmax, r.time, id, r.fromCamera};
     }
 }
 
 }  // namespace
 
-void Tracer::closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::stop_token stop, bool coherent) {
-    assert(rays.size() == hits.size());
+void Tracer::closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::stop_token stop, bool coherent,
+                         std::span<const uint32_t> ids) {
+    assert(rays.size() == hits.size() && (ids.empty() || ids.size() == rays.size()));
     parallelRanges(
         static_cast<int64_t>(rays.size()), kRayBlock,
         [&](int64_t begin, int64_t end) {
             const auto first = static_cast<size_t>(begin), count = static_cast<size_t>(end - begin);
             std::vector<BatchRay> batch;
             std::vector<RawHit> raw(count);
-            toBatchRays(rays.subspan(first, count), batch, first);
+            toBatchRays(rays.subspan(first, count), batch, first, ids);
             intersectRays(impl_->scene.embree, batch, raw, coherent ? Coherence::Coherent : Coherence::Incoherent);
             for (size_t i = 0; i < count; ++i) {
                 hits[first + i] = Hit();
@@ -268,7 +270,8 @@ void Tracer::closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::st
                 const Vec3 position = batch[i].origin + batch[i].direction * raw[i].distance;
                 hits[first + i] = {surfacePoint(impl_->scene.tables, raw[i], position, batch[i].time), raw[i].distance};
             }
-            impl_->add(coherent ? TraceCounts{.cameraRays = count} : TraceCounts{.bounceRays = count});
+            const auto flown = static_cast<uint64_t>(std::count_if(batch.begin(), batch.end(), [](const BatchRay& r) { return r.tmin <= r.tmax; }));
+            impl_->add(coherent ? TraceCounts{.cameraRays = flown} : TraceCounts{.bounceRays = flown});
         },
         stop);
 }
@@ -306,6 +309,10 @@ bool Tracer::has(const SurfacePoint& point) const {
            (instances[point.instance].body >= 0 || point.primitive < instances[point.instance].triangleCount);
 }
 
+bool Tracer::isOnLight(const SurfacePoint& point) const {
+    return has(point) && impl_->scene.tables.instances[point.instance].body >= 0;
+}
+
 Vec3 Tracer::position(const SurfacePoint& point) const {
     return point.valid() ? surfacePosition(impl_->scene.tables, point) : Vec3(0);
 }
@@ -325,6 +332,8 @@ TraceCounts Tracer::counts() const {
 void Tracer::resetCounts() {
     impl_->cameraRays = impl_->bounceRays = impl_->shadowRays = impl_->nonFinite = 0;
 }
+
+uint32_t firstRayId(const RandomKey& key, uint32_t seed) { return pcgHash(pathHash(key, seed)); }
 
 void Tracer::recordRays(RayRecorder* recorder) { impl_->scene.embree.record(recorder); }
 const EmbreeScene& Tracer::embree() const { return impl_->scene.embree; }

@@ -84,20 +84,24 @@ public:
                std::span<PathObserver* const> observers, std::stop_token stop = {}, std::span<const RayCone> cones = {});
 
     /// tracePaths() from where closestHits() found that the rays of `starts` end: hits[i] is that of starts[i].ray, an
-    /// invalid one left the scene. The result is tracePaths()'s.
+    /// invalid one left the scene. The result is tracePaths()'s if closestHits() was given the ids firstRayId().
     bool continuePaths(std::span<const PathStart> starts, std::span<const Hit> hits, const PathSettings& settings,
                        uint32_t seed, std::span<Vec3> radiance, std::span<PathObserver* const> observers,
                        std::stop_token stop = {});
 
     /// Nearest hits. `coherent`: neighbours among the rays start alike and go alike, as camera rays do; it is faster then,
-    /// and they count as camera rays.
-    void closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::stop_token stop = {}, bool coherent = false);
+    /// and they count as camera rays. Rays with tmin > tmax meet nothing and are not counted. `ids` (may be empty: by place
+    /// in the call) draw which blended surfaces a ray stops at: the same id always draws the same.
+    void closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::stop_token stop = {}, bool coherent = false,
+                     std::span<const uint32_t> ids = {});
     /// blocked[i] = 1 if anything lies in (tmin, tmax). With `blockers` (may be empty) the nearest blocker is reported.
     void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked, std::span<SurfacePoint> blockers = {},
                   std::stop_token stop = {});
 
     /// Is this a point of the scene that is bound? What was kept from an earlier scene may not be.
     bool has(const SurfacePoint& point) const;
+    /// Does it lie on the body of a light? All of a body is one primitive.
+    bool isOnLight(const SurfacePoint& point) const;
     /// World position of a surface point, and of the same point in the previous frame.
     Vec3 position(const SurfacePoint& point) const;
     Vec3 previousPosition(const SurfacePoint& point) const;
@@ -117,6 +121,9 @@ private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+/// What draws the blended surfaces that the first ray of a path stops at.
+uint32_t firstRayId(const RandomKey& key, uint32_t seed);
 
 /// Camera ray through continuous pixel `pixelPosition`; `lens` in [0,1)^2.
 PathStart cameraStart(const CameraPose& camera, Vec2 pixelPosition, Vec2 lens, float time);

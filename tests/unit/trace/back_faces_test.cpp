@@ -1,5 +1,7 @@
-// Back faces of single-sided materials: gone for the camera, solid for every other ray.
+// Back faces of single-sided materials: gone for the camera, solid for every other ray. Blended ones: the same rays stop.
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 #include "support/transport_scene.h"
 
@@ -123,6 +125,48 @@ TEST(BackFaces, AFrameLooksThroughACeilingFromAbove) {
     };
     EXPECT_NEAR(depth(true), 4, 0.02);
     EXPECT_NEAR(depth(false), 6, 0.02);
+}
+
+// Whatever a ray meets: floor, box, lamp, nothing; behind a sheet that half of the rays pass, the same half both times.
+TEST(Tracer, PathsGoOnFromTheirHits) {
+    TinyScene tiny;
+    tiny.add(floorMesh(), lambert(0.5f));
+    tiny.add(boxMesh(Vec3(1)), lambert(0.5f), translation(Vec3(2, 0.5f, 0)));
+    Light lamp;
+    lamp.type = LightType::Sphere, lamp.radius = 0.3f, lamp.radiance = Vec3(4);
+    tiny.addLight(lamp, translation(Vec3(0, 2, 0)));
+    Material gauze = lambert(0.8f);
+    gauze.alphaMode = AlphaMode::Blend, gauze.alpha = 0.5f;
+    tiny.add(floorMesh(6), gauze, translation(Vec3(0, 0.6f, 0)));
+    Tracer tracer;
+    tracer.bind(tiny.pose());
+    const size_t count = 1000;
+    std::vector<PathStart> starts(count);
+    std::vector<Ray> rays(count);
+    std::vector<uint32_t> ids(count);
+    for (uint32_t i = 0; i < count; ++i) {
+        const Vec3 target(0.01f * static_cast<float>(i % 250), 0.5f * static_cast<float>(i / 125), 0.1f);
+        starts[i].ray = rays[i] = {Vec3(0.5f, 1, 3), 0, glm::normalize(target - Vec3(0.5f, 1, 3)), kInfinity, 0};
+        starts[i].cone = {0, 1e-3f};
+        starts[i].key = {i, 4, 2}, starts[i].slot = i;
+        ids[i] = firstRayId(starts[i].key, 9);
+    }
+    std::vector<Hit> hits(count);
+    std::vector<Vec3> whole(count), continued(count);
+    tracer.closestHits(rays, hits, {}, true, ids);
+    EXPECT_EQ(tracer.counts().cameraRays, count);
+    const auto stopped = std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.point.instance == 2; });
+    EXPECT_GT(stopped, 50);
+    // A ray alone stops where it stopped among the others.
+    for (size_t i = 0; i < count; i += 7) {
+        Hit alone;
+        tracer.closestHits({&rays[i], 1}, {&alone, 1}, {}, false, {&ids[i], 1});
+        EXPECT_EQ(alone.point.instance, hits[i].point.instance) << i;
+    }
+    ASSERT_TRUE(tracer.continuePaths(starts, hits, plainPaths(3), 9, continued, {}));
+    EXPECT_EQ(tracer.counts().cameraRays, count);
+    ASSERT_TRUE(tracer.tracePaths(starts, plainPaths(3), 9, whole, {}));
+    EXPECT_EQ(continued, whole);
 }
 
 }  // namespace

@@ -146,29 +146,6 @@ TEST(Tracer, ShadingAPointIsTracingAPathToIt) {
     }
 }
 
-// Whatever a ray meets: floor, box, lamp, nothing.
-TEST(Tracer, PathsGoOnFromTheirHits) {
-    Tracer tracer;
-    tracer.bind(litFloor().pose());
-    const size_t count = 1000;
-    std::vector<PathStart> starts(count);
-    std::vector<Ray> rays(count);
-    for (uint32_t i = 0; i < count; ++i) {
-        const Vec3 target(0.01f * static_cast<float>(i % 250), 0.5f * static_cast<float>(i / 125), 0.1f);
-        starts[i].ray = rays[i] = {Vec3(0.5f, 1, 3), 0, glm::normalize(target - Vec3(0.5f, 1, 3)), kInfinity, 0};
-        starts[i].cone = {0, 1e-3f};
-        starts[i].key = {i, 4, 2}, starts[i].slot = i;
-    }
-    std::vector<Hit> hits(count);
-    std::vector<Vec3> whole(count), continued(count);
-    tracer.closestHits(rays, hits, {}, true);
-    EXPECT_EQ(tracer.counts().cameraRays, count);
-    ASSERT_TRUE(tracer.continuePaths(starts, hits, plainPaths(3), 9, continued, {}));
-    EXPECT_EQ(tracer.counts().cameraRays, count);
-    ASSERT_TRUE(tracer.tracePaths(starts, plainPaths(3), 9, whole, {}));
-    EXPECT_EQ(continued, whole);
-}
-
 /// Adds up a path's radiance from its vertices, as the documentation of PathVertex says.
 class Summing : public PathObserver {
 public:
