@@ -96,9 +96,8 @@ void sky(const SkyGrid& grid, LightLanes& lights, PlainLanes& lanes) {
         const float x0 = lights.second.x[i], x1 = lights.second.y[i], y0 = lights.third.x[i], y1 = lights.third.y[i];
         const float u = (lights.first.x[i] + partOf(lanes.lightPointX[i], x0, x1)) / g.columns;
         const float v = (lights.first.y[i] + partOf(lanes.lightPointY[i], y0, y1)) / g.rows;
-        float sinPhi, cosPhi, sinTheta, cosTheta;
-        sinCosOfTurns(u - 0.5f, sinPhi, cosPhi);
-        sinCosOfTurns(0.5f * v, sinTheta, cosTheta);
+        const SinCos phi = sinCosTurns(u - 0.5f), theta = sinCosTurns(0.5f * v);
+        const float sinPhi = phi.sine, cosPhi = phi.cosine, sinTheta = theta.sine, cosTheta = theta.cosine;
         const float density = (y1 - y0) * (x1 - x0) * g.rows * g.columns;
         const float x = sinTheta * sinPhi, z = -sinTheta * cosPhi;
         Sample s;
