@@ -61,8 +61,12 @@ void startPinhole(const FrameSampling& sampling, const PinholeView& view, const 
     cameraKernels().pinhole(view, row.x, row.yWithin, row.count, x, y, z, spread);
     const Vec3 origin = transformPoint(sampling.camera.worldFromCamera, Vec3(0));
     for (int i = 0; i < row.count; ++i) {
-        starts[i].ray = {origin, 0, {x[i], y[i], z[i]}, kInfinity, 0, true};
-        starts[i].cone = {0, spread[i]};
+        Ray& ray = starts[i].ray;
+        ray.origin = origin;
+        ray.direction.x = x[i], ray.direction.y = y[i], ray.direction.z = z[i];
+        ray.tmin = ray.time = 0, ray.tmax = kInfinity;
+        ray.fromCamera = true;
+        starts[i].cone.width = 0, starts[i].cone.spread = spread[i];
     }
 }
 
@@ -96,7 +100,7 @@ void makeStarts(const FrameSampling& sampling, Pixel leftTop, Pixel rightBottom,
         for (int i = 0; i < width; ++i) {
             const RandomKey key = keyOf(row, i, sample);
             if (!pinhole) first[i] = startGeneral(sampling, {row.x[i], row.yWithin[i]}, key);
-            first[i].key = key;
+            first[i].key.x = key.x, first[i].key.y = key.y, first[i].key.sample = key.sample;
             first[i].slot = static_cast<uint32_t>(row.y * sampling.extent.width + row.left + i);
         }
     }

@@ -67,10 +67,12 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
     for (uint32_t i = 0; i < count; ++i) {
         const PathStart& start = starts[i];
         PathState& path = batch.paths[i];
-        path = PathState();
-        path.ray = {start.ray.origin, start.ray.tmin, start.ray.direction, start.ray.tmax, start.ray.time, 0,
-                    start.ray.fromCamera};
-        path.cone = start.cone;
+        // Member by member, here and below: what is put together elsewhere and copied waits for its parts.
+        new (&path) PathState();
+        path.ray.origin = start.ray.origin, path.ray.direction = start.ray.direction;
+        path.ray.tmin = start.ray.tmin, path.ray.tmax = start.ray.tmax;
+        path.ray.time = start.ray.time, path.ray.fromCamera = start.ray.fromCamera;
+        path.cone.width = start.cone.width, path.cone.spread = start.cone.spread;
         path.stream = SampleStream(settings_.sampler, settings_.haltonLoop, seed_, start.key);
         path.hash = pathHash(start.key, seed_);
         path.slot = start.slot, path.sample = start.key.sample;
@@ -146,6 +148,7 @@ void Integrator::findHits(PathBatch& batch, int depth, bool coherent, TraceCount
 /// A part of the batch that the lanes can hold.
 void Integrator::shadeRows(PathBatch& batch, Rows rows, int depth, std::span<const SurfacePoint> firstPoints) const {
     const bool given = !firstPoints.empty();
+    batch.plain.glossy = false;
     if (!given) arrive(batch, rows, depth);
     for (uint32_t row = rows.begin; row < rows.end; ++row) {
         if (depth < needs_.vertexDepths) batch.vertexOf[batch.active[row]] = row;
@@ -157,7 +160,8 @@ void Integrator::shadeRows(PathBatch& batch, Rows rows, int depth, std::span<con
 
 /// Geometry of all hits before any is shaded: what a later step reads from memory is asked for in the one before.
 void Integrator::arrive(PathBatch& batch, Rows rows, int depth) const {
-    prefetchSurfaces(scene_.tables, std::span(batch.hits).subspan(rows.begin, rows.end - rows.begin));
+    if (scene_.embree.strayPacketWidth() == 1)  // small scenes are in the cache
+        prefetchSurfaces(scene_.tables, std::span(batch.hits).subspan(rows.begin, rows.end - rows.begin));
     batch.geometry.resize(batch.active.size());
     batch.collected.resize(batch.active.size());
     for (size_t row = rows.begin; row < rows.end; ++row) {
@@ -166,7 +170,7 @@ void Integrator::arrive(PathBatch& batch, Rows rows, int depth) const {
         if (!hit.valid()) continue;
         PathState& path = batch.paths[batch.active[row]];
         path.cone.width += path.cone.spread * hit.distance;
-        path.throughput *= transmittance(path.absorption, hit.distance);
+        if (batch.absorbs) path.throughput *= transmittance(path.absorption, hit.distance);
         const InstanceRecord& instance = scene_.tables.instances[hit.instance];
         if (instance.body >= 0 || isDark(instance, hit.primitive, depth)) continue;
         const MaterialRecord& material = scene_.tables.materials[instance.materialOf(hit.primitive)];

@@ -66,6 +66,7 @@ private:
     void addPlain(PathBatch& batch, uint32_t row, const Surface& surface) const;
     void shadePlain(PathBatch& batch, int depth) const;
     void drawNumbers(PathBatch& batch, int depth, bool lights, bool roulette) const;
+    void setReceiver(LightReceiver& receiver, const PlainLanes& lanes, int lane, float time) const;
     void samplePlainLights(PathBatch& batch) const;
     void pendPlainLights(PathBatch& batch, int depth) const;
     void continuePlain(PathBatch& batch, int lane, int depth, bool lastRay) const;

@@ -31,6 +31,7 @@ void Integrator::addPlain(PathBatch& batch, uint32_t row, const Surface& surface
     lanes.specularColor.set(i, in.specularColor);
     lanes.metallic[i] = in.metallic, lanes.roughness[i] = in.roughness;
     lanes.ior[i] = in.ior, lanes.specular[i] = in.specular;
+    lanes.glossy |= in.metallic > 0 || in.specular > 0;
 }
 
 /// A hit whose surface the kernels find.
@@ -113,7 +114,7 @@ void Integrator::drawNumbers(PathBatch& batch, int depth, bool lights, bool roul
         float *x, *y;
         bool wanted;
     };
-    const Use uses[] = {{dimension::kLobe, lanes.lobeX, nullptr, true},
+    const Use uses[] = {{dimension::kLobe, lanes.lobeX, nullptr, lanes.glossy},
                         {dimension::kBsdf, lanes.bsdfX, lanes.bsdfY, true},
                         {dimension::kLight, lanes.lightX, lanes.lightY, lights && scene_.lights.count() > 1},
                         {dimension::kLightPoint, lanes.lightPointX, lanes.lightPointY, lights},
@@ -147,7 +148,7 @@ void Integrator::shadePlain(PathBatch& batch, int depth) const {
     const PlainSettings settings{settings_.multipleScattering, settings_.strategy == DirectStrategy::Mis,
                                  settings_.roulette && depth + 1 >= settings_.rouletteDepth};
     drawNumbers(batch, depth, usesLightSamples_, settings.roulette);
-    const PlainKernels& kernels = plainKernels();
+    const PlainLobeKernels& kernels = lanes.glossy ? plainLobeKernels() : plainDiffuseKernels();
     kernels.prepare(lanes, albedos, settings);
     if (depth < needs_.albedoDepths)
         for (int i = 0; i < lanes.count; ++i) {
@@ -168,13 +169,19 @@ void Integrator::shadePlain(PathBatch& batch, int depth) const {
     lanes.count = 0;
 }
 
+void Integrator::setReceiver(LightReceiver& receiver, const PlainLanes& lanes, int i, float time) const {
+    receiver.position = lanes.position.get<Vec3>(i), receiver.normal = lanes.geometricNormal.get<Vec3>(i);
+    receiver.time = time;
+    receiver.facing = LightReceiver::Facing::Front;
+    receiver.sampling = settings_.lightSampling;
+}
+
 void Integrator::samplePlainLights(PathBatch& batch) const {
     PlainLanes& lanes = batch.plain;
     const auto count = static_cast<size_t>(lanes.count);
     const auto path = [&](int i) -> const PathState& { return batch.paths[batch.active[lanes.row[i]]]; };
     for (int i = 0; i < lanes.count; ++i)
-        batch.receivers[i] = {lanes.position.get<Vec3>(i), lanes.geometricNormal.get<Vec3>(i), path(i).ray.time,
-                              LightReceiver::Facing::Front, settings_.lightSampling};
+        setReceiver(batch.receivers[i], lanes, i, path(i).ray.time);
     scene_.lights.choose({batch.receivers, count}, lanes.lightX, lanes.lightY, {batch.choices, count});
     scene_.lights.samplePoints({batch.choices, count}, {batch.receivers, count}, batch.lights, lanes);
     if (settings_.strategy == DirectStrategy::Bsdf)
@@ -207,10 +214,16 @@ void Integrator::pendPlainLights(PathBatch& batch, int depth) const {
             vertex.light = static_cast<int>(entry);
             batch.splits.push_back({lanes.lightDiffuse.get<Vec3>(i), lanes.lightSpecular.get<Vec3>(i)});
         }
-        batch.pending.push_back({index, lanes.lightContribution.get<Vec3>(i), scene_.lights.isSky(entry),
-                                 Vec2(batch.lights.skyU[i], batch.lights.skyV[i])});
-        batch.shadowRays.push_back({lanes.start.get<Vec3>(i), 0, lanes.shadowDirection.get<Vec3>(i), lanes.shadowLength[i],
-                                    path.ray.time, pcgHash(path.hash + static_cast<uint32_t>(2 * depth + 1))});
+        PendingLight& pending = batch.pending.emplace_back();
+        pending.path = index;
+        pending.contribution = lanes.lightContribution.get<Vec3>(i);
+        pending.sky = scene_.lights.isSky(entry);
+        if (pending.sky) pending.skyPlace.x = batch.lights.skyU[i], pending.skyPlace.y = batch.lights.skyV[i];
+        BatchRay& ray = batch.shadowRays.emplace_back();
+        ray.origin = lanes.start.get<Vec3>(i), ray.direction = lanes.shadowDirection.get<Vec3>(i);
+        ray.tmax = lanes.shadowLength[i];
+        ray.time = path.ray.time;
+        ray.id = pcgHash(path.hash + static_cast<uint32_t>(2 * depth + 1));
     }
 }
 
@@ -230,8 +243,7 @@ void Integrator::continuePlain(PathBatch& batch, int i, int depth, bool lastRay)
         if (depth < needs_.shareDepths && !delta) vertex.diffuseShare = lanes.diffuseShare.get<Vec3>(i);
     }
     path.throughput *= weight;
-    path.scatter = {lanes.position.get<Vec3>(i), lanes.geometricNormal.get<Vec3>(i), path.ray.time,
-                    LightReceiver::Facing::Front, settings_.lightSampling};
+    setReceiver(path.scatter, lanes, i, path.ray.time);
     path.scatterPdf = lanes.pdf[i];
     ++(diffuse ? path.diffuseCount : path.specularCount);
     path.diffuseBefore |= diffuse;

@@ -84,10 +84,11 @@ void intersectPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<
         Packet<N>::intersect(valid, scene, &context, &packet);
         for (size_t i = 0; i < count; ++i) {
             RawHit& hit = hits[first + i];
-            hit = RawHit();
-            if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-            hit = {packet.ray.tfar[i], instanceOf(packet.hit.geomID[i], packet.hit.instID[0][i]), packet.hit.primID[i],
-                   packet.hit.u[i], packet.hit.v[i]};
+            const bool some = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+            hit.distance = some ? packet.ray.tfar[i] : kInfinity;
+            hit.instance = some ? instanceOf(packet.hit.geomID[i], packet.hit.instID[0][i]) : kNoInstance;
+            hit.primitive = packet.hit.primID[i];
+            hit.u = packet.hit.u[i], hit.v = packet.hit.v[i];
         }
     }
 }

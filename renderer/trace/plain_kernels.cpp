@@ -1,20 +1,14 @@
 // Plain surfaces, many lanes at a time; formulas and their sources are BaseBsdf's.
 #include "trace/plain_kernels.h"
 
-#include "trace/lane_math.h"
+#include "trace/plain_lane_steps.h"
 
 namespace lumi::LUMI_ISA {
 namespace {
 
-constexpr float kLeastCosine = 1e-4f, kLeastLobeShare = 0.05f, kLeastLoss = 1e-7f, kBelowOne = 0x1.fffffep-1f;
+constexpr float kLeastLobeShare = 0.05f, kLeastLoss = 1e-7f;
 
 using Lanes = PlainLanes;
-
-LUMI_LANE Lane3 at(const Lanes::Column3& c, int i) { return {c.x[i], c.y[i], c.z[i]}; }
-LUMI_LANE void put(Lanes::Column3& c, int i, Lane3 v) { c.x[i] = v.x, c.y[i] = v.y, c.z[i] = v.z; }
-
-/// Into [0, 1]; NaN becomes 0.
-LUMI_LANE float saturated(float x) { return x > 0 ? least(x, 1.0f) : 0.0f; }
 
 LUMI_LANE float schlickWeightAt(float cosTheta) {
     const float m = cosTheta < 1 ? 1 - cosTheta : 0.0f;
@@ -164,7 +158,7 @@ void prepare(Lanes& lanes, const AlbedoView& view, const PlainSettings& settings
         wo = unit(wo);
         put(lanes.axisX, i, frame.x), put(lanes.axisY, i, frame.y);
         put(lanes.woLocal, i, wo);
-        put(lanes.start, i, offsetStart(at(lanes.position, i), at(lanes.geometricNormal, i), lanes.offset[i]));
+        putStart(lanes, i);
 
         // Facets.
         const float roughness = saturated(lanes.roughness[i]), bound = view.leastRoughness;
@@ -284,29 +278,9 @@ void light(Lanes& lanes, const AlbedoView& view, const PlainSettings& settings) 
     const int count = lanes.count;
 #pragma GCC ivdep
     for (int i = 0; i < count; ++i) {
-        const Lane3 direction = at(lanes.lightDirection, i), wo = at(lanes.woLocal, i);
-        const float side = dot(direction, at(lanes.geometricNormal, i)), pdf = lanes.lightPdf[i];
-        const Lane3 wi = toLocal(frameOf(lanes, i), direction);
+        const Lane3 wo = at(lanes.woLocal, i), wi = toLocal(frameOf(lanes, i), at(lanes.lightDirection, i));
         const Scattered f = scatteredTo(lanes, i, view, wo, wi, halfOf(wo + wi));
-
-        // Power heuristic against the continuation that could find the same light.
-        const float usable = pdf > 0 ? pdf : 1.0f, ratio = f.pdf / usable;
-        const float weight = (mis && lanes.lightWeighs[i] > 0 ? 1 / (1 + ratio * ratio) : 1.0f) / usable;
-        const Lane3 radiance = at(lanes.lightRadiance, i) * weight;
-        const Lane3 diffuse = f.diffuse * radiance, specular = f.specular * radiance, sum = diffuse + specular;
-        const Lane3 contribution = sum * at(lanes.throughput, i);
-        put(lanes.lightDiffuse, i, diffuse), put(lanes.lightSpecular, i, specular);
-        put(lanes.lightContribution, i, contribution);
-
-        const bool black = (sum.x == 0) & (sum.y == 0) & (sum.z == 0);
-        const Lane3 segment = at(lanes.lightTarget, i) - at(lanes.start, i);
-        const float length = std::sqrt(dot(segment, segment));
-        const bool infinite = !finite(lanes.lightDistance[i]), some = infinite | (length > 0);
-        const float scale = 1 / (length > 0 ? length : 1.0f);
-        put(lanes.shadowDirection, i, choose(infinite, direction, segment * scale));
-        lanes.shadowLength[i] = infinite ? lanes.lightDistance[i] : length;
-        const bool reaches = (pdf > 0) & (side > 0) & (wi.z > 0) & !black & some;
-        lanes.lightValid[i] = reaches ? (finite(contribution) ? 1.0f : -1.0f) : 0.0f;
+        putLight(lanes, i, f.diffuse, f.specular, f.pdf, wi.z > 0, mis);
     }
 }
 
@@ -321,7 +295,7 @@ LUMI_LANE Lane3 visibleNormalAt(Lane3 wo, float alpha, float u, float v) {
 }
 
 void scatter(Lanes& lanes, const AlbedoView& view, const PlainSettings& settings) {
-    const float leastSurvival = settings.roulette ? 0.05f : 1.0f, mostSurvival = settings.roulette ? 0.95f : 1.0f;
+    const bool roulette = settings.roulette;
     const int count = lanes.count;
 #pragma GCC ivdep
     for (int i = 0; i < count; ++i) {
@@ -344,16 +318,8 @@ void scatter(Lanes& lanes, const AlbedoView& view, const PlainSettings& settings
         const Scattered f = scatteredTo(lanes, i, view, wo, wi, h);
         const bool some = f.pdf > 0;
         const Lane3 both = (f.diffuse + f.specular) * (1 / (some ? f.pdf : 1.0f));
-        Lane3 weight = choose(mirror, at(lanes.reflectedAlbedo, i) * (1 / (ps > 0 ? ps : 1.0f)), both);
-
-        const Lane3 direction = unit(toWorld(frameOf(lanes, i), wi));
-        const float side = dot(direction, at(lanes.geometricNormal, i));
-        const bool black = (weight.x == 0) & (weight.y == 0) & (weight.z == 0);
-        const float survival = within(mostOf(at(lanes.throughput, i) * weight), leastSurvival, mostSurvival);
-        const bool lives = lanes.rouletteX[i] < survival;
-        const bool goes = (mirror | some) & (side > 0) & (wi.z > 0) & !black & finite(weight) & lives;
-        weight = weight * (1 / survival);
-        put(lanes.nextDirection, i, direction), put(lanes.weight, i, weight);
+        const Lane3 weight = choose(mirror, at(lanes.reflectedAlbedo, i) * (1 / (ps > 0 ? ps : 1.0f)), both);
+        const bool goes = putContinuation(lanes, i, frameOf(lanes, i), wi, weight, mirror | some, roulette);
         lanes.pdf[i] = mirror ? 0.0f : f.pdf;
         const float whole = diffuse ? 1.0f : 0.0f;
         const auto shareOf = [&](float d, float s) { return d + s > 0 && !mirror ? d / (d + s) : whole; };
@@ -367,7 +333,12 @@ void scatter(Lanes& lanes, const AlbedoView& view, const PlainSettings& settings
 }  // namespace
 
 const PlainKernels& plainTable() {
-    static const PlainKernels table{place, bend, prepare, light, scatter};
+    static const PlainKernels table{place, bend};
+    return table;
+}
+
+const PlainLobeKernels& plainLobeTable() {
+    static const PlainLobeKernels table{prepare, light, scatter};
     return table;
 }
 

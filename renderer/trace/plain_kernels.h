@@ -16,6 +16,9 @@ struct PlainKernels {
     void (*place)(PlainLanes& lanes);
     /// And their shading normals: by the normal map, and so that mirror directions stay above the surface.
     void (*bend)(PlainLanes& lanes);
+};
+
+struct PlainLobeKernels {
     /// Scattering functions of all lanes: what Bsdf's constructor and keep() do.
     void (*prepare)(PlainLanes& lanes, const AlbedoView& albedos, const PlainSettings& settings);
     /// What the light samples are worth, and their shadow rays.
@@ -25,5 +28,9 @@ struct PlainKernels {
 };
 
 LUMI_KERNELS(PlainKernels, plain)
+LUMI_KERNELS(PlainLobeKernels, plainLobe)
+/// For lanes none of which reflects like a mirror or a gloss (PlainLanes::glossy): what plainLobeKernels() would give, bit for
+/// bit, of what is read after them.
+LUMI_KERNELS(PlainLobeKernels, plainDiffuse)
 
 }  // namespace lumi

@@ -25,6 +25,7 @@ struct alignas(64) PlainLanes {
     };
 
     int count = 0;
+    bool glossy = false;    ///< some lane is metallic or has a specular layer; else all are diffuse
     Words row;              ///< of the batch
     Words scramble, index;  ///< of the path's random numbers
     uint64_t seeds[kMost];  ///< scratch

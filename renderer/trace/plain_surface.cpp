@@ -54,6 +54,7 @@ void collectTriangle(const InstanceRecord& r, const MaterialRecord& material, co
     lanes.metallic[i] = material.metallic, lanes.roughness[i] = material.roughness;
     lanes.specularColor.set(i, saturate(material.specularColor * 1e-4f) * 1e4f);
     lanes.specular[i] = saturate(material.specular);
+    lanes.glossy |= material.metallic > 0 || material.specular > 0;
     lanes.ior[i] = material.ior >= 1 && std::isfinite(material.ior) ? material.ior : 1.5f;
 }
 

@@ -71,7 +71,7 @@ std::unique_ptr<PlainLanes> makeLanes(std::vector<BsdfInputs>& materials) {
     return lanes;
 }
 
-void run(const PlainKernels& kernels, PlainLanes& lanes) {
+void run(const PlainLobeKernels& kernels, PlainLanes& lanes) {
     const AlbedoView albedos = SchlickAlbedo::get().view();
     const PlainSettings settings;
     kernels.prepare(lanes, albedos, settings);
@@ -88,7 +88,7 @@ void expectNear(const Vec3& found, const Vec3& expected, int lane) {
 TEST(PlainKernels, AgreeWithBsdf) {
     std::vector<BsdfInputs> materials;
     const auto lanes = makeLanes(materials);
-    run(plainKernels(), *lanes);
+    run(plainLobeKernels(), *lanes);
     int deltas = 0, ends = 0;
     for (int i = 0; i < kLanes; ++i) {
         const Frame frame(lanes->normal.get<Vec3>(i));
@@ -121,15 +121,61 @@ TEST(PlainKernels, AgreeWithBsdf) {
 TEST(PlainKernels, SameBytesOnEveryInstructionSet) {
     std::vector<BsdfInputs> materials;
     const auto expected = makeLanes(materials);
-    run(baseline::plainTable(), *expected);
-    const auto check = [&](const PlainKernels& kernels) {
+    run(baseline::plainLobeTable(), *expected);
+    const auto check = [&](const PlainLobeKernels& kernels) {
         std::vector<BsdfInputs> again;
         const auto lanes = makeLanes(again);
         run(kernels, *lanes);
         EXPECT_EQ(std::memcmp(lanes.get(), expected.get(), sizeof(PlainLanes)), 0);
     };
-    if (detectIsa() >= Isa::V3) check(v3::plainTable());
-    if (detectIsa() >= Isa::V4) check(v4::plainTable());
+    if (detectIsa() >= Isa::V3) check(v3::plainLobeTable());
+    if (detectIsa() >= Isa::V4) check(v4::plainLobeTable());
+}
+
+std::unique_ptr<PlainLanes> diffuseLanes(const PlainLobeKernels& kernels) {
+    std::vector<BsdfInputs> materials;
+    auto lanes = makeLanes(materials);
+    for (int i = 0; i < kLanes; ++i) {
+        lanes->metallic[i] = lanes->specular[i] = 0;
+        if (i % 9 == 0) lanes->baseColor.set(i, Vec3(0));
+        if (i % 13 == 0) lanes->lobes[i] = PlainLanes::kSpecularLobe;
+    }
+    run(kernels, *lanes);
+    return lanes;
+}
+
+/// A path may be shaded beside glossy ones or among diffuse ones alone: it may not matter which.
+TEST(PlainKernels, DiffuseLanesHaveTheBitsOfGeneralOnes) {
+    const auto expectSame = [](const PlainLobeKernels& general, const PlainLobeKernels& diffuse) {
+        const auto a = diffuseLanes(general), b = diffuseLanes(diffuse);
+        const auto same = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof(float) * kLanes) == 0; };
+        const auto same3 = [&](const PlainLanes::Column3& x, const PlainLanes::Column3& y) {
+            return same(x.x, y.x) && same(x.y, y.y) && same(x.z, y.z);
+        };
+        EXPECT_TRUE(same3(a->start, b->start));
+        EXPECT_TRUE(same3(a->diffuseAlbedo, b->diffuseAlbedo));
+        EXPECT_TRUE(same3(a->specularAlbedo, b->specularAlbedo));
+        EXPECT_TRUE(same3(a->lightDiffuse, b->lightDiffuse));
+        EXPECT_TRUE(same3(a->lightSpecular, b->lightSpecular));
+        EXPECT_TRUE(same3(a->lightContribution, b->lightContribution));
+        EXPECT_TRUE(same3(a->shadowDirection, b->shadowDirection));
+        EXPECT_TRUE(same(a->shadowLength, b->shadowLength));
+        EXPECT_TRUE(same(a->lightValid, b->lightValid));
+        int goOn = 0;
+        for (int i = 0; i < kLanes; ++i) {
+            ASSERT_EQ(a->next[i], b->next[i]) << i;
+            if (a->next[i] == PlainLanes::kEnds) continue;
+            ++goOn;
+            EXPECT_EQ(a->nextDirection.get<Vec3>(i), b->nextDirection.get<Vec3>(i)) << i;
+            EXPECT_EQ(a->weight.get<Vec3>(i), b->weight.get<Vec3>(i)) << i;
+            EXPECT_EQ(a->diffuseShare.get<Vec3>(i), b->diffuseShare.get<Vec3>(i)) << i;
+            EXPECT_EQ(a->pdf[i], b->pdf[i]) << i;
+        }
+        EXPECT_GT(goOn, kLanes / 2);
+    };
+    expectSame(baseline::plainLobeTable(), baseline::plainDiffuseTable());
+    if (detectIsa() >= Isa::V3) expectSame(v3::plainLobeTable(), v3::plainDiffuseTable());
+    if (detectIsa() >= Isa::V4) expectSame(v4::plainLobeTable(), v4::plainDiffuseTable());
 }
 
 TEST(SamplerKernels, AreTheStreamsNumbers) {
