@@ -135,7 +135,7 @@ class Results(StudyTest):
         out = self.folder / "out"
         self.assertEqual(sorted(p.name for p in (out / "figures").iterdir()), ["strip.png", "strip.svg"])
         tables = {p.name: p.read_text() for p in (out / "tables").iterdir()}
-        self.assertEqual(set(tables), {"results-cornell.tex", "equal-cornell.tex", "ablation-cornell.tex", "metrics.tex", "all.tex"})
+        self.assertEqual(set(tables), {"results-cornell.tex", "times-cornell.tex", "equal-cornell.tex", "ablation-cornell.tex", "metrics.tex", "all.tex"})
         self.assertIn("\\toprule", tables["results-cornell.tex"])
         self.assertIn("Tiny \\textless{}study\\textgreater{}", tables["results-cornell.tex"])
         # Another choice of crops is drawn from what is there: nothing is rendered again, and what is not wanted any more goes.
