@@ -55,7 +55,7 @@ def test_everything_is_there(browser):
     assert browser.value("[...document.querySelectorAll('.strip svg text')].some(t => t.textContent === 'Reference')")
     # Without its stage the mean of one frame is no mean: surely worse at the last frame, in bold.
     assert count("#ablations ~ .card td .sure") >= 1
-    assert count("details.latex") == 4 and browser.value("document.querySelector('details.latex pre').textContent.includes('\\\\toprule')")
+    assert count("details.latex") == 5 and browser.value("document.querySelector('details.latex pre').textContent.includes('\\\\toprule')")
     assert browser.value("[...document.images].every(i => i.complete && i.naturalWidth === 240)"), "an image does not show"
     assert browser.value("performance.getEntriesByType('resource').filter(e => !e.name.startsWith('data:')).length") == 0, "it loads something"
     assert browser.value("!document.querySelector('main').innerText.match(/NaN|undefined|\\[object/)"), "a value is missing"
