@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 
 #include "base/parallel.h"
 #include "math/hash.h"
@@ -16,6 +17,28 @@ namespace {
 constexpr float kEpsilon = 1e-4f;        ///< as VerificationSettings::epsilon
 constexpr uint32_t kStream = 0x3a472002u;  ///< second word of the samples' keys
 enum Code : uint8_t { kNew, kKept, kMoved };
+
+/// Where a sample of the frame before is now.
+struct Landing {
+    Vec3 inWorld{0};
+    Vec2 place{0};
+    float depth = kInfinity;  ///< infinite: nowhere on the screen
+};
+
+std::vector<Landing> land(const FrameContext& context, const std::vector<SampleLocation>& locations) {
+    std::vector<Landing> landings(locations.size());
+    parallelRanges(static_cast<int64_t>(locations.size()), 1 << 12, [&](int64_t begin, int64_t end) {
+        for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+            const SampleLocation& location = locations[i];
+            if (!location.isSky() && !context.tracer.has(location.point())) continue;
+            Landing& landing = landings[i];
+            landing.inWorld = placeInWorld(context.tracer, location);
+            if (!placeOnScreen(context.camera, location, landing.inWorld, landing.place)) continue;
+            landing.depth = location.isSky() ? std::numeric_limits<float>::max() : context.camera.project(landing.inWorld).z;
+        }
+    });
+    return landings;
+}
 
 }  // namespace
 
@@ -52,20 +75,17 @@ void Martin2002Module::reproject(const FrameContext& context, const Kept& previo
         next.places[p] = Vec2(p % width, p / width) + 0.5f;
         next.names[p] = hashCombine(static_cast<uint32_t>(p), static_cast<uint32_t>(context.frame));
     }
-    for (size_t i = 0; i < previous.locations.size(); ++i) {
-        const SampleLocation& location = previous.locations[i];
-        if (!location.isSky() && !context.tracer.has(location.point())) continue;
-        const Vec3 inWorld = placeInWorld(context.tracer, location);
-        Vec2 place;
-        if (!placeOnScreen(context.camera, location, inWorld, place)) continue;
-        const float depth = location.isSky() ? std::numeric_limits<float>::max() : context.camera.project(inWorld).z;
-        const size_t p = static_cast<size_t>(place.y) * width + static_cast<size_t>(place.x);
-        if (!(depth < nearest[p])) continue;
-        nearest[p] = depth;
-        next.locations[p] = location;
-        next.places[p] = place;
+    const std::vector<Landing> landings = land(context, previous.locations);
+    for (size_t i = 0; i < landings.size(); ++i) {
+        const Landing& landing = landings[i];
+        if (!(landing.depth < kInfinity)) continue;
+        const size_t p = static_cast<size_t>(landing.place.y) * width + static_cast<size_t>(landing.place.x);
+        if (!(landing.depth < nearest[p])) continue;
+        nearest[p] = landing.depth;
+        next.locations[p] = previous.locations[i];
+        next.places[p] = landing.place;
         next.names[p] = previous.names[i], next.pathsDrawn[p] = previous.pathsDrawn[i], next.ages[p] = previous.ages[i] + 1;
-        inWorld_[p] = inWorld;
+        inWorld_[p] = landing.inWorld;
         codes_[p] = kKept;
     }
 }
@@ -87,18 +107,21 @@ void Martin2002Module::verifyAndShade(const FrameContext& context, std::span<con
     std::vector<PathStart> starts(count);
     std::vector<Ray> rays(count);
     std::vector<float> distances(count);
+    std::vector<uint32_t> ids(count);
     std::vector<Hit> hits(count);
     for (size_t k = 0; k < count; ++k) {
         const uint32_t p = pixels[k];
         starts[k] = rayToSample(camera, next.locations[p], next.places[p], inWorld_[p], distances[k]);
         rays[k] = starts[k].ray;
+        ids[k] = next.names[p];
     }
-    context.tracer.closestHits(rays, hits, context.stop, true);
+    context.tracer.closestHits(rays, hits, context.stop, true, ids);
     for (size_t k = 0; k < count; ++k) {
         const uint32_t p = pixels[k];
         SampleLocation& location = next.locations[p];
         const SampleLocation met = hits[k].valid() ? SampleLocation::ofPoint(hits[k].point) : SampleLocation::ofSky(rays[k].direction);
-        const bool same = met.instance == location.instance && (location.isSky() || met.primitive == location.primitive);
+        const bool same = met.instance == location.instance &&
+                          (location.isSky() || (met.primitive == location.primitive && !context.tracer.isOnLight(hits[k].point)));
         const bool expected = same || (!met.isSky() && !location.isSky() && std::abs(hits[k].distance - distances[k]) <= kEpsilon * distances[k]);
         if (!location.isNew() && expected) {
             if (!location.isSky()) hits[k] = {location.point(), distances[k]};

@@ -102,7 +102,7 @@ bool placeOnScreen(const CameraPose& camera, const SampleLocation& location, con
         place = 0.5f * Vec2(camera.extent.width, camera.extent.height) + Vec2(along.x, -along.y) * scale;
     } else {
         const Vec3 pixel = camera.project(inWorld);
-        if (perspective && !(pixel.z > 0)) return false;
+        if (!(pixel.z > 0)) return false;
         place = Vec2(pixel);
     }
     return place.x >= 0 && place.y >= 0 && place.x < static_cast<float>(camera.extent.width) &&

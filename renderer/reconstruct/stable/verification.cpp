@@ -51,10 +51,10 @@ void locate(const FrameContext& context, const Ray& ray, const Hit& hit, uint32_
     frame.motions[i] = Vec2(surfaceMotion(camera, previous, frame.inWorld[i], context.tracer.previousPosition(hit.point)));
 }
 
-Verdict judge(const SampleLocation& location, const Hit& hit, float distance, float epsilon) {
+Verdict judge(const Tracer& tracer, const SampleLocation& location, const Hit& hit, float distance, float epsilon) {
     if (!hit.valid()) return location.isSky() ? Verdict::Visible : Verdict::Missed;
     if (location.isSky()) return Verdict::Occluded;
-    const bool same = hit.point.instance == location.instance && hit.point.primitive == location.primitive;
+    const bool same = hit.point.instance == location.instance && hit.point.primitive == location.primitive && !tracer.isOnLight(hit.point);
     return same || hit.distance >= distance * (1 - epsilon) ? Verdict::Visible : Verdict::Occluded;
 }
 
@@ -64,14 +64,16 @@ void verifyRange(const FrameContext& context, std::span<const uint32_t> work, fl
     std::vector<Ray> rays(work.size());
     std::vector<Hit> hits(work.size());
     std::vector<float> distances(work.size());
+    std::vector<uint32_t> ids(work.size());
     for (size_t k = 0; k < work.size(); ++k) {
         const uint32_t i = work[k];
         rays[k].tmin = 1, rays[k].tmax = 0;
         if (i == kIdle) continue;
         rays[k] = rayToSample(camera, set.locations[i], set.places[i], frame.inWorld[i], distances[k]).ray;
         rays[k].tmax = distances[k] * (1 + epsilon);
+        ids[k] = set.lights[i].name;  // a sample on a blended surface finds it again
     }
-    context.tracer.closestHits(rays, hits, context.stop, true);
+    context.tracer.closestHits(rays, hits, context.stop, true, ids);
     for (size_t k = 0; k < work.size(); ++k) {
         const uint32_t i = work[k];
         if (i == kIdle) continue;
@@ -79,7 +81,7 @@ void verifyRange(const FrameContext& context, std::span<const uint32_t> work, fl
             locate(context, rays[k], hits[k], i, frame, set);
             continue;
         }
-        frame.verdicts[i] = judge(set.locations[i], hits[k], distances[k], epsilon);
+        frame.verdicts[i] = judge(context.tracer, set.locations[i], hits[k], distances[k], epsilon);
         if (frame.verdicts[i] == Verdict::Occluded) frame.blockers[i] = SampleLocation::ofPoint(hits[k].point);
     }
 }
