@@ -117,7 +117,10 @@ void drawPaneOverlay(AppState& state, int pane, const ImRect& rect, const ImRect
     if (visible.GetWidth() < 1) return;
     const auto map = state.shownMap(pane);
     const bool reference = state.showsReference();
-    if (!map && !reference) drawPixelValues(state, pane, rect, visible);
+    if (!map && !reference) {
+        drawMotionArrows(state, pane, rect, visible);
+        drawPixelValues(state, pane, rect, visible);
+    }
     if (state.hovered && state.view.zoom() >= px(6))
         drawPixelFrame(state, *state.hovered, rect, visible, IM_COL32(255, 255, 255, 150), false);
     if (state.pinned) drawPixelFrame(state, *state.pinned, rect, visible, palette::kAccent, true);

@@ -18,7 +18,9 @@ std::vector<ImRect> paneRects(const AppState& state, const ImRect& area);
 /// drawn last. `pane` is under the pointer.
 void handleViewportInput(AppState& state, const ImRect& pane);
 
-/// What is written over the pane: chips, colour bar, pixel values, marks. `half` is the visible part under a wipe.
+/// A grid of arrows over a buffer of motion (colour map `wheel`), from pixels to where they were a frame earlier, and the wheel.
+void drawMotionArrows(AppState& state, int pane, const ImRect& rect, const ImRect& visible);
+/// What is written over the pane: chips, colour bar, arrows, pixel values, marks. `half` is the visible part under a wipe.
 void drawPaneOverlay(AppState& state, int pane, const ImRect& rect, const ImRect& visible);
 /// Chips with module and buffer, and the words that say exactly what is shown.
 void drawPaneLabel(AppState& state, int pane, const ImRect& rect, bool alignRight);

@@ -22,7 +22,7 @@ LUMI_LANES Lanes steeringVariance(const AtrousRow& row, const float* variance, s
     const float* line = variance + at;
     if (!row.variancePrefilter) return here.load(line);
     const std::ptrdiff_t above = guide.y > 0 ? -guide.width : 0, below = guide.y + 1 < guide.height ? guide.width : 0;
-    const auto column = [&](const Span<Edge>& span, int i) [[gnu::always_inline]] {
+    const auto column = [&](const Span<Edge>& span, int i) LUMI_LANES_LAMBDA {
         return mulAdd(lanes(2.0f), span.load(line + i), span.load(line + above + i) + span.load(line + below + i));
     };
     const Lanes centre = column(here, 0);
@@ -62,7 +62,7 @@ LUMI_LANES void add(const AtrousRow& row, const std::array<LaneTap<Edge>, Taps>&
     weightExp2(w);
     for (size_t t = 0; t < Taps; ++t)
         for (int c = 0; c < Components; ++c) {
-            const auto load = [&](const float* plane) [[gnu::always_inline]] { return taps[t].span.load(plane + taps[t].at); };
+            const auto load = [&](const float* plane) LUMI_LANES_LAMBDA { return taps[t].span.load(plane + taps[t].at); };
             const IlluminationView& in = row.in[c];
             Component& sum = components[c];
             const Lanes weight = w[t * Components + c];
@@ -93,7 +93,7 @@ LUMI_LANES void filterLanes(const AtrousRow& row, const TapPairs<2>& taps, int x
     for (int c = 0; c < Components; ++c) start<Edge>(row, c, at, x, components[c]);
     const EdgeStop<Usual, Edge> edges(row.guide, x);
     for (int i = 0; i < taps.count; ++i)
-        edges.forPair(taps.pairs[i], [&](const auto& pair) [[gnu::always_inline]] { add(row, pair, components); });
+        edges.forPair(taps.pairs[i], [&](const auto& pair) LUMI_LANES_LAMBDA { add(row, pair, components); });
     for (int c = 0; c < Components; ++c) finish(row.out[c], at, spanOf<Edge>(x, 0, row.guide.width), components[c]);
 }
 

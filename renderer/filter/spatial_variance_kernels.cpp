@@ -27,7 +27,7 @@ LUMI_LANES void estimateLanes(const SpatialVarianceRow& row, const TapPairs<kRad
     if (anyAbove(least, length)) {
         const EdgeStop<Usual, Edge> edges(row.guide, x);
         for (int i = 0; i < taps.count; ++i)
-            edges.forPair(taps.pairs[i], [&]<size_t Taps>(const std::array<LaneTap<Edge>, Taps>& pair) [[gnu::always_inline]] {
+            edges.forPair(taps.pairs[i], [&]<size_t Taps>(const std::array<LaneTap<Edge>, Taps>& pair) LUMI_LANES_LAMBDA {
                 Lanes w[Taps];
                 for (size_t t = 0; t < Taps; ++t) w[t] = pair[t].exponent;
                 weightExp2(w);

@@ -64,6 +64,8 @@ Plan planFor(std::string_view channels, const std::string& defaultMap, const Dis
     return plan;
 }
 
+constexpr float kLeastMotion = 0.01f;  ///< pixels
+
 /// The number that a map or range is about, one pixel at a time, for percentiles.
 struct ScalarAt {
     const Plan& plan;
@@ -96,7 +98,8 @@ ValueRange rangeFor(const Plan& plan, const ScalarAt& value, int64_t count, cons
     if (plan.map == "ids") return {0, 1};
     if (!settings.autoRange) return {settings.low, settings.high};
     const ValueRange found = percentileRange(count, value);
-    if (plan.style == Style::Wheel) return {0, found.high > 0 ? found.high : 1};
+    // Where all but nothing moves, what is left is the rounding of projections.
+    if (plan.style == Style::Wheel) return {0, found.high > kLeastMotion ? found.high : 1};
     if (plan.map == "signed") {
         const float reach = std::max(std::abs(found.low), std::abs(found.high));
         return reach > 0 ? ValueRange{-reach, reach} : ValueRange{-1, 1};

@@ -11,6 +11,7 @@ namespace lumi {
 namespace {
 
 #define LUMI_LANES [[maybe_unused, gnu::always_inline]] inline
+#define LUMI_LANES_LAMBDA __attribute__((always_inline))  // where compilers agree that a lambda may have it
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 
@@ -128,7 +129,7 @@ using IntLanes = int32_t __attribute__((vector_size(sizeof(Lanes))));
 template <int Count>
 LUMI_LANES void weightExp2(Lanes (&x)[Count]) {
     Lanes f[Count], p[Count];
-    const auto forAll = [](auto step) [[gnu::always_inline]] {
+    const auto forAll = [](auto step) LUMI_LANES_LAMBDA {
         for (int i = 0; i < Count; ++i) step(i);
     };
 #if defined(__AVX512F__) && defined(__AVX512DQ__)

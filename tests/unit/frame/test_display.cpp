@@ -244,6 +244,17 @@ TEST(Display, WheelShowsDirectionAsHue) {
     EXPECT_NE(pixel(out, 3, 0), pixel(out, 4, 0));
 }
 
+// Rounding of projections is 1e-4 px at most; the wheel that fits itself does not blow it up into a picture.
+TEST(Display, WheelLeavesWhatStandsBlack) {
+    Image motion({8, 8}, 3);
+    for (size_t i = 0; i < motion.size(); ++i) motion.data()[i] = i % 3 == 0 ? 1e-4f : -3e-5f;
+    Image8 out;
+    EXPECT_EQ(convert(motion, "XYZ", "wheel", {}, out).high, 1);
+    EXPECT_EQ(pixel(out, 4, 4), kBlack);
+    motion.at(0, 4, 4) = motion.at(0, 3, 3) = 2;
+    EXPECT_GT(convert(motion, "XYZ", "wheel", {}, out).high, 0.5f);
+}
+
 TEST(Display, ChannelsAloneAreGreyOrMapped) {
     Image image = noiseImage({8, 8}, 3);
     DisplaySettings settings;
