@@ -17,8 +17,8 @@ constexpr int kBins = 12;
 constexpr size_t kAlone = 4096;
 /// Lights that are taken as one from afar: at most so many, from so many of their group's radii on, if their directions
 /// lie within this cone.
-constexpr uint32_t kMostInGroup = 256;
-constexpr float kFarRadii = 6, kGroupSpread = 0.8f;
+constexpr uint32_t kMostInGroup = 4096;
+constexpr float kFarRadii = 4, kGroupSpread = 0.8f;
 
 /// Solid angle that the lights shine into, weighted by the cosine [Conty Estevez & Kulla 2018, equation 1].
 float orientationMeasure(const LightBounds& b) {
