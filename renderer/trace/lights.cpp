@@ -70,6 +70,23 @@ Lights::Choice Lights::choose(const LightReceiver& receiver, Vec2 pick) const {
     return chosenInfinite(receiver, choice.u, choice.probability, elsewhere);
 }
 
+namespace {
+
+/// One of `count` weights, `elsewhere` their sum, in proportion to them; none: -1.
+int drawnByWeight(const float* weights, uint32_t count, float u, float elsewhere) {
+    int chosen = -1;
+    float rest = u * elsewhere;
+    for (uint32_t i = 0; i < count; ++i) {
+        if (!(weights[i] > 0)) continue;
+        chosen = static_cast<int>(i);
+        if (rest < weights[i]) break;
+        rest -= weights[i];
+    }
+    return chosen;
+}
+
+}  // namespace
+
 /// One of the infinite lights, which have `share` of the choice and the sum `elsewhere` of importances.
 Lights::Choice Lights::chosenInfinite(const LightReceiver& receiver, float u, float share, float elsewhere) const {
     Choice chosen;
@@ -97,17 +114,32 @@ void Lights::choose(std::span<const LightReceiver> receivers, const float* pickX
         LightTreePoint points[kAtOnce];
         float elsewhere[kAtOnce];
         LightTreeChoice found[kAtOnce];
+        // What the infinite lights weigh is kept for the choice among them, unless there are many.
+        constexpr uint32_t kKept = 4;
+        float weights[kAtOnce][kKept];
+        const auto infinite = static_cast<uint32_t>(entries_.size()) - finiteCount_;
         for (size_t first = 0; first < count; first += kAtOnce) {
             const size_t size = std::min(kAtOnce, count - first);
             for (size_t i = 0; i < size; ++i) {
                 points[i] = treePoint(receivers[first + i]);
-                elsewhere[i] = infiniteImportance(receivers[first + i]);
+                elsewhere[i] = 0;
+                for (uint32_t k = 0; k < infinite; ++k) {
+                    const float own = infiniteImportance(receivers[first + i], k);
+                    if (k < kKept) weights[i][k] = own;
+                    elsewhere[i] += own;
+                }
             }
             tree_.pick(points, elsewhere, pickX + first, pickY + first, found, static_cast<int>(size));
-            for (size_t i = 0; i < size; ++i)
-                choices[first + i] = found[i].elsewhere ? chosenInfinite(receivers[first + i], found[i].u,
-                                                                         found[i].probability, elsewhere[i])
-                                                        : Choice{found[i].light, found[i].probability};
+            for (size_t i = 0; i < size; ++i) {
+                Choice& choice = choices[first + i];
+                if (!found[i].elsewhere) {
+                    choice = {found[i].light, found[i].probability};
+                } else if (infinite > kKept) {
+                    choice = chosenInfinite(receivers[first + i], found[i].u, found[i].probability, elsewhere[i]);
+                } else if (const int k = drawnByWeight(weights[i], infinite, found[i].u, elsewhere[i]); k >= 0) {
+                    choice = {finiteCount_ + static_cast<uint32_t>(k), found[i].probability * weights[i][k] / elsewhere[i]};
+                }
+            }
         }
     }
     for (size_t i = 0; i < count; ++i)
