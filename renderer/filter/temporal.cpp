@@ -45,8 +45,10 @@ struct TemporalBlock {
 class TemporalPass {
 public:
     TemporalPass(const Signals& signals, const TemporalSettings& settings, const std::vector<const Image*>& samples,
-                 const TemporalHistory* previous, TemporalHistory& next, Image* verdict, const HistoryLoss& loss)
+                 const TemporalHistory* previous, TemporalHistory& next, Image* verdict, const HistoryLoss& loss,
+                 const IntegratedLuminance& luminance)
         : signals_(signals), settings_(settings), samples_(samples), previous_(previous), next_(next), verdict_(verdict), loss_(loss),
+          luminance_(luminance),
           reprojection_(signals, previous ? previous->surface : next.surface, settings.reprojection) {}
 
     void row(int y, TemporalBlock& scratch) const {
@@ -120,6 +122,7 @@ private:
             row.sample[c] = samples_[n]->plane(c).data + at;
             row.colour[c] = to.colour.plane(c).data + at;
         }
+        if (!luminance_.empty()) row.luminance = luminance_[n]->data() + at;
         if (!settings_.moments) return row;
         row.previousMean = previous_ ? previous_->components[n].mean.data() : nullptr;
         row.previousVariance = previous_ ? previous_->components[n].sampleVariance.data() : nullptr;
@@ -145,6 +148,7 @@ private:
     TemporalHistory& next_;
     Image* verdict_;
     const HistoryLoss& loss_;
+    const IntegratedLuminance& luminance_;
     const Reprojection reprojection_;
 };
 
@@ -192,13 +196,15 @@ size_t TemporalHistory::bytes() const {
 
 bool filterTemporally(const Signals& signals, const TemporalSettings& settings, const std::vector<const Image*>& samples,
                       const TemporalHistory* previous, TemporalHistory& next, Image* verdict, std::stop_token stop,
-                      const HistoryLoss& loss) {
+                      const HistoryLoss& loss, const IntegratedLuminance& luminance) {
     const Extent2 extent = signals.extent();
     assert(loss.empty() || loss.size() == samples.size());
     next.reset(extent, static_cast<int>(samples.size()), settings.moments);
     if (previous && (previous->length.extent() != extent || previous->components.size() != samples.size())) previous = nullptr;
     if (verdict) verdict->reset(extent, 1);
-    const TemporalPass pass(signals, settings, samples, previous, next, verdict, loss);
+    for (Image* plane : luminance)
+        if (plane->extent() != extent) plane->reset(extent, 1);
+    const TemporalPass pass(signals, settings, samples, previous, next, verdict, loss, luminance);
     parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
         TemporalBlock scratch;
         next.surface.copyRows(signals, static_cast<int>(begin), static_cast<int>(end));

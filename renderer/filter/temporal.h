@@ -41,10 +41,14 @@ struct TemporalHistory {
 /// (all), one plane a component; none, or as many as components.
 using HistoryLoss = std::vector<const Image*>;
 
+/// Where the luminance of the integrated colours is wanted beside them: one plane a component, or none.
+using IntegratedLuminance = std::vector<Image*>;
+
 /// Integrates `samples` (RGB, finite, one a component) with `previous` (null: no history) into `next`.
 /// `verdict`, if given, gets verdictValue() of each pixel. With `loss` lambda the weight of the new sample is
 /// alpha + (1 - alpha) lambda, and the history's length shrinks by the largest lambda of the components. Returns false if stopped; `next` is then undefined.
 bool filterTemporally(const Signals& signals, const TemporalSettings& settings, const std::vector<const Image*>& samples,
-                      const TemporalHistory* previous, TemporalHistory& next, Image* verdict, std::stop_token stop, const HistoryLoss& loss = {});
+                      const TemporalHistory* previous, TemporalHistory& next, Image* verdict, std::stop_token stop, const HistoryLoss& loss = {},
+                      const IntegratedLuminance& luminance = {});
 
 }  // namespace lumi

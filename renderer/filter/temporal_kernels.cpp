@@ -80,10 +80,20 @@ void integrateMoments(const IntegrationRow& row) {
     }
 }
 
+/// Rec. 709, of what integrateColour() has just written.
+void luminanceOfColour(const IntegrationRow& row) {
+    const float* __restrict r = row.colour[0];
+    const float* __restrict g = row.colour[1];
+    const float* __restrict b = row.colour[2];
+    float* __restrict out = row.luminance;
+    for (int x = 0; x < row.count; ++x) out[x] = 0.2126f * r[x] + 0.7152f * g[x] + 0.0722f * b[x];
+}
+
 template <int Taps, bool InARow>
 void integrate(const IntegrationRow& row) {
     for (int channel = 0; channel < 3; ++channel) integrateColour<Taps, InARow>(row, channel);
     if (row.mean) integrateMoments<Taps, InARow>(row);
+    if (row.luminance) luminanceOfColour(row);
 }
 
 void integrateRow(const IntegrationRow& row) {

@@ -40,6 +40,7 @@ struct IntegrationRow {
     float* colour[3];
     float* mean = nullptr;  ///< null: no moments
     float* variance = nullptr;
+    float* luminance = nullptr;  ///< of the integrated colour; null: nobody wants it
 };
 
 struct TemporalKernels {

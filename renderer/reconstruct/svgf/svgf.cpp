@@ -46,8 +46,9 @@ bool SvgfModule::integrate(const FrameContext& context, const Step& step) {
     HistoryLoss loss;
     if (!estimateLoss(context, loss)) return false;
     const auto measured = context.timer.measure("temporal filter");
+    for (Illumination& planes : input_) planes.reset(extent());
     if (!filterTemporally(context.signals, parameters_.temporal, {&frame().direct, &frame().indirect}, step.previous, step.next,
-                          captured().target("reprojection"), context.stop, loss))
+                          captured().target("reprojection"), context.stop, loss, {&input_[0].luminance, &input_[1].luminance}))
         return false;
     keepIntegrated(captured(), step.next);
     if (Lineage* lineage = inspected()) {
@@ -55,12 +56,8 @@ bool SvgfModule::integrate(const FrameContext& context, const Step& step) {
         for (size_t c = 0; c < loss.size(); ++c)
             addHistoryRows(*lineage, context.signals, step.previous, parameters_.temporal, c == 0 ? "direct, history" : "indirect, history", loss[c]);
     }
-    for (size_t c = 0; c < kComponents; ++c) {
-        input_[c].reset(extent());
-        // The integrated colour moves on; handOver() gives the history what it is to keep.
-        std::swap(input_[c].rgb, step.next.components[c].colour);
-        updateLuminance(input_[c]);
-    }
+    // The integrated colour moves on; handOver() gives the history what it is to keep.
+    for (size_t c = 0; c < kComponents; ++c) std::swap(input_[c].rgb, step.next.components[c].colour);
     return true;
 }
 
