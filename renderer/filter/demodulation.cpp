@@ -9,7 +9,7 @@
 namespace lumi {
 namespace {
 
-constexpr int64_t kGrain = 1 << 11;  ///< pixels whose rows stay in the first-level cache
+constexpr int64_t kGrain = 1 << 13;
 
 }  // namespace
 
