@@ -141,16 +141,25 @@ CameraPose pinhole(const CameraPose& camera) {
 }
 
 PathStart rayToSample(const CameraPose& camera, const SampleLocation& location, Vec2 place, const Vec3& inWorld, float& distance) {
-    PathStart start = cameraStart(camera, place, Vec2(0.5f), 0);
     distance = kInfinity;
+    if (camera.projection == Projection::Perspective && !location.isNew() && !location.isSky()) {
+        // cameraStart() through the sample itself, without going by way of its place.
+        PathStart start;
+        start.ray.origin = camera.position();
+        const Vec3 along = inWorld - start.ray.origin;
+        distance = glm::length(along);
+        start.ray.direction = distance > 0 ? along * (1 / distance) : camera.forward();
+        start.ray.fromCamera = true;
+        start.cone = {0, camera.pixelSize() * std::abs(glm::dot(start.ray.direction, camera.forward()))};
+        return start;
+    }
+    PathStart start = cameraStart(camera, place, Vec2(0.5f), 0);
     if (location.isNew()) return start;
     if (location.isSky()) {
         start.ray.direction = inWorld;
         return start;
     }
-    const Vec3 along = inWorld - start.ray.origin;
-    distance = camera.projection == Projection::Perspective ? glm::length(along) : glm::dot(along, start.ray.direction);
-    if (camera.projection == Projection::Perspective && distance > 0) start.ray.direction = along / distance;
+    distance = glm::dot(inWorld - start.ray.origin, start.ray.direction);
     return start;
 }
 
