@@ -67,8 +67,9 @@ Influences influencesAt(const Vec3& p) {
     Influences w{};
     const float side = p.x >= 0 ? 1.0f : -1.0f, x = std::abs(p.x);
     const float chest = glm::smoothstep(0.38f, 0.62f, p.y), head = glm::smoothstep(0.75f, 0.84f, p.y + 0.25f * p.z - 0.5f * std::max(0.0f, x - 0.1f));
-    // Across the shoulder, then down the arm; hands hang as low as the legs begin.
-    const float arm = glm::smoothstep(0.19f, 0.30f, x + 0.35f * (0.70f - p.y)) * glm::smoothstep(0.17f, 0.255f, x);
+    // Across the shoulder, then down the arm; hands hang beside the thighs, a finger's width away.
+    const float raised = glm::smoothstep(0.52f, 0.68f, p.y), inner = glm::mix(0.252f, 0.17f, raised), outer = glm::mix(0.274f, 0.255f, raised);
+    const float arm = glm::smoothstep(0.19f, 0.30f, x + 0.35f * (0.70f - p.y)) * glm::smoothstep(inner, outer, x);
     const float forearm = glm::smoothstep(0.57f, 0.47f, p.y) * arm;
     const int first = side > 0 ? kArmLeft : kArmRight;
     w[kPelvis] = (1 - arm) * (1 - chest);
