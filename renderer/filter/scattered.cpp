@@ -1,6 +1,9 @@
 #include "filter/scattered.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
@@ -26,30 +29,45 @@ bool fillPixel(const Image& image, const std::vector<uint8_t>& known, int x, int
     return count > 0;
 }
 
-/// Gives a colour to pixels that no sample was near. Rounds, each from what the one before left.
-int64_t fillHoles(const Image& weights, Image& image) {
+/// Holes around a pixel, each once.
+void addNeighbours(Extent2 extent, uint32_t pixel, const std::vector<uint8_t>& known, std::vector<uint8_t>& listed, std::vector<uint32_t>& ring) {
+    const int x = static_cast<int>(pixel) % extent.width, y = static_cast<int>(pixel) / extent.width;
+    for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, extent.height - 1); ++ny)
+        for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, extent.width - 1); ++nx) {
+            const auto i = static_cast<size_t>(ny) * static_cast<size_t>(extent.width) + static_cast<size_t>(nx);
+            if (known[i] || std::exchange(listed[i], uint8_t{1})) continue;
+            ring.push_back(static_cast<uint32_t>(i));
+        }
+}
+
+/// Gives a colour to pixels that no sample was near: ring after ring, each from what the one before left, so that the work
+/// is that of the holes' number. Returns that number; -1 if stopped.
+int64_t fillHoles(const Image& weights, Image& image, const std::stop_token& stop) {
     const Extent2 extent = image.extent();
     std::vector<uint8_t> known(weights.size());
-    std::vector<uint32_t> holes;
+    std::vector<uint32_t> ring;  // holes that may have a neighbour with a colour
     for (size_t i = 0; i < known.size(); ++i) {
         known[i] = weights.data()[i] > 0;
-        if (!known[i]) holes.push_back(static_cast<uint32_t>(i));
+        if (!known[i]) ring.push_back(static_cast<uint32_t>(i));
     }
-    const auto count = static_cast<int64_t>(holes.size());
+    const auto count = static_cast<int64_t>(ring.size());
     if (count == extent.area()) return count;
-    while (!holes.empty()) {
-        std::vector<std::pair<uint32_t, Vec3>> filled;
-        std::erase_if(holes, [&](uint32_t hole) {
+    std::vector<uint8_t> listed(known.size(), 0);
+    std::vector<std::pair<uint32_t, Vec3>> filled;
+    while (!ring.empty()) {
+        if (stop.stop_requested()) return -1;
+        filled.clear();
+        for (const uint32_t hole : ring) {
             Vec3 colour;
             const int x = static_cast<int>(hole) % extent.width, y = static_cast<int>(hole) / extent.width;
-            if (!fillPixel(image, known, x, y, colour)) return false;
-            filled.emplace_back(hole, colour);
-            return true;
-        });
+            if (fillPixel(image, known, x, y, colour)) filled.emplace_back(hole, colour);
+        }
         for (const auto& [hole, colour] : filled) {
             known[hole] = 1;
             for (int c = 0; c < 3; ++c) image.plane(c).data[hole] = colour[c];
         }
+        ring.clear();
+        for (const auto& [hole, colour] : filled) addNeighbours(extent, hole, known, listed, ring);
     }
     return count;
 }
@@ -76,6 +94,13 @@ void ScatteredSettings::describe(ParameterVisitor& v) {
                       "tone-mapped colours); off: the filter is linear"});
 }
 
+float scatteredWeight(const ScatteredSettings& settings, Vec2 off, const Vec3& colour) {
+    if (!std::isfinite(colour.x) || !std::isfinite(colour.y) || !std::isfinite(colour.z)) return 0;
+    const float tone = settings.toneMapped ? 1 / (1 + std::max(luminance(colour), 0.0f)) : 1;
+    if (settings.filter == ScatteredSettings::Filter::Box) return tone;
+    return tone * std::exp(-glm::dot(off, off) / (2 * settings.sigma * settings.sigma));
+}
+
 int64_t reconstructScattered(const ScatteredSamples& samples, const ScatteredSettings& settings, Image& out, Image& weights,
                              std::stop_token stop) {
     const Extent2 extent = samples.extent;
@@ -90,6 +115,7 @@ int64_t reconstructScattered(const ScatteredSamples& samples, const ScatteredSet
     shared.box = settings.filter == ScatteredSettings::Filter::Box;
     shared.toneMapped = settings.toneMapped;
     shared.falloff = 1 / (2 * settings.sigma * settings.sigma);
+    std::atomic<bool> hasHoles{false};
     parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
         const size_t stride = 4 * (static_cast<size_t>(extent.width) + 2);
         std::vector<float> sums(stride * static_cast<size_t>(end - begin), 0.0f);
@@ -99,11 +125,14 @@ int64_t reconstructScattered(const ScatteredSamples& samples, const ScatteredSet
         scatteredKernels().splat(rows);
         for (int y = rows.top; y < rows.bottom; ++y) {
             float* const planes[3] = {out.plane(0).row(y), out.plane(1).row(y), out.plane(2).row(y)};
-            scatteredKernels().resolve(sums.data() + stride * static_cast<size_t>(y - rows.top), extent.width, settings.toneMapped, planes,
+            scatteredKernels().resolve(sums.data() + stride * static_cast<size_t>(y - rows.top), extent.width, planes,
                                        weights.plane(0).row(y));
+            const float* line = weights.plane(0).row(y);
+            if (std::any_of(line, line + extent.width, [](float w) { return !(w > 0); })) hasHoles = true;
         }
     }, stop);
-    return stop.stop_requested() ? -1 : fillHoles(weights, out);
+    if (stop.stop_requested()) return -1;
+    return hasHoles ? fillHoles(weights, out, stop) : 0;
 }
 
 }  // namespace lumi

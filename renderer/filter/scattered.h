@@ -28,9 +28,14 @@ struct ScatteredSamples {
     std::span<const uint8_t> hidden;  ///< 1: plays no part; may be empty
 };
 
+/// Weight of a sample in the pixel whose centre is `off` away, if that is among its 3 x 3 (Gaussian) or its own (box);
+/// 0 where the colour is not finite. With `toneMapped` a sample weighs 1 / (1 + luminance) as much: that is what
+/// compressing colours before the filter and expanding their mean comes to.
+float scatteredWeight(const ScatteredSettings& settings, Vec2 off, const Vec3& colour);
+
 /// The image, RGB, scene-linear, and the sum of weights of each pixel (Y). Where that is 0, no sample was near: the pixel
 /// gets the mean of those of its eight neighbours that have a colour, round after round; without any sample all is black.
-/// Returns the number of such pixels; -1 if stopped.
+/// Sums below 1e-30 count as 0. Returns the number of such pixels; -1 if stopped.
 int64_t reconstructScattered(const ScatteredSamples& samples, const ScatteredSettings& settings, Image& out, Image& weights,
                              std::stop_token stop);
 

@@ -9,6 +9,7 @@ namespace lumi::LUMI_ISA {
 namespace {
 
 constexpr float kLargest = 3.402823466e38f;
+constexpr float kLeast = 1e-30f;  ///< sums of weights below it have lost bits of their colours
 
 inline float luminanceOf(float r, float g, float b) { return 0.2126f * r + 0.7152f * g + 0.0722f * b; }
 
@@ -22,14 +23,15 @@ inline void axisWeights(const ScatteredRows& rows, float f, float out[3]) {
     if (rows.box) out[0] = out[2] = 0, out[1] = 1;
 }
 
-/// A sample's colour with weight 1 behind it; false if it plays no part.
+/// A sample's colour times its weight, and the weight; false if it plays no part. To filter c / (1 + y) and to expand the
+/// mean m by 1 / (1 - luminance(m)) is to filter c with weights w / (1 + y), which cancels nothing at any radiance.
 inline bool colourOf(const ScatteredRows& rows, uint32_t i, float out[4]) {
     const float* c = rows.colours + 3 * static_cast<std::ptrdiff_t>(i);
     const float r = c[0], g = c[1], b = c[2];
     if (!(std::fabs(r) <= kLargest) || !(std::fabs(g) <= kLargest) || !(std::fabs(b) <= kLargest)) return false;
     const float y = luminanceOf(r, g, b);
     const float scale = rows.toneMapped ? 1.0f / (1.0f + (y > 0.0f ? y : 0.0f)) : 1.0f;
-    out[0] = r * scale, out[1] = g * scale, out[2] = b * scale, out[3] = 1.0f;
+    out[0] = r * scale, out[1] = g * scale, out[2] = b * scale, out[3] = scale;
     return true;
 }
 
@@ -57,14 +59,11 @@ void splat(const ScatteredRows& rows) {
     }
 }
 
-void resolve(const float* sums, int width, bool toneMapped, float* const out[3], float* weight) {
+void resolve(const float* sums, int width, float* const out[3], float* weight) {
     for (int x = 0; x < width; ++x) {
         const float* sum = sums + 4 * (static_cast<std::ptrdiff_t>(x) + 1);
-        const float w = sum[3], inverse = w > 0.0f ? 1.0f / w : 0.0f;
-        const float r = sum[0] * inverse, g = sum[1] * inverse, b = sum[2] * inverse;
-        const float rest = 1.0f - luminanceOf(r, g, b);
-        const float scale = toneMapped ? 1.0f / (rest > 1e-6f ? rest : 1e-6f) : 1.0f;
-        out[0][x] = r * scale, out[1][x] = g * scale, out[2][x] = b * scale;
+        const float w = sum[3] > kLeast ? sum[3] : 0.0f, inverse = w > 0.0f ? 1.0f / w : 0.0f;
+        out[0][x] = sum[0] * inverse, out[1][x] = sum[1] * inverse, out[2][x] = sum[2] * inverse;
         weight[x] = w;
     }
 }

@@ -20,7 +20,7 @@ struct ScatteredRows {
 struct ScatteredKernels {
     void (*splat)(const ScatteredRows& rows);
     /// Colours and weights of one row of sums, its first and last pixel left out, to rows of planes.
-    void (*resolve)(const float* sums, int width, bool toneMapped, float* const out[3], float* weight);
+    void (*resolve)(const float* sums, int width, float* const out[3], float* weight);
 };
 
 LUMI_KERNELS(ScatteredKernels, scattered)

@@ -182,19 +182,34 @@ TEST(ScatteredFilter, IsTheTruncatedGaussian) {
         reconstructScattered({extent, first, places, colours, hidden}, settings, out, weights, {});
         for (int y = 0; y < extent.height; ++y)
             for (int x = 0; x < extent.width; ++x) {
-                double weight = 0, sum[3] = {};
+                double weight = 0, toned = 0, sum[3] = {};
                 for (size_t i = 0; i < places.size(); ++i) {
                     if (hidden[i] || i == 7 || std::abs(int(places[i].x) - x) > 1 || std::abs(int(places[i].y) - y) > 1) continue;
                     const double dx = places[i].x - x - 0.5, dy = places[i].y - y - 0.5, w = std::exp(-(dx * dx + dy * dy) / (2 * 0.25));
-                    weight += w;
-                    for (int c = 0; c < 3; ++c) sum[c] += w * colours[i][c] / (toneMapped ? 1 + luminance(colours[i]) : 1);
+                    const double tone = toneMapped ? 1 + luminance(colours[i]) : 1;
+                    weight += w, toned += w / tone;
+                    EXPECT_NEAR(scatteredWeight(settings, Vec2(static_cast<float>(dx), static_cast<float>(dy)), colours[i]), w / tone, 1e-5);
+                    for (int c = 0; c < 3; ++c) sum[c] += w * colours[i][c] / tone;
                 }
-                EXPECT_NEAR(weights.at(0, x, y), weight, 1e-4);
+                EXPECT_NEAR(weights.at(0, x, y), toned, 1e-4);
                 if (weight == 0) continue;
                 Vec3 mean(sum[0] / weight, sum[1] / weight, sum[2] / weight);
                 if (toneMapped) mean /= 1 - luminance(mean);
                 for (int c = 0; c < 3; ++c) EXPECT_NEAR(out.at(c, x, y), mean[c], 1e-4 * (1 + mean[c])) << x << ' ' << y;
             }
+    }
+}
+
+// What is compressed before the filter comes out whole, however bright: a sun among lamps.
+TEST(ScatteredFilter, KeepsRadianceOfAnyHeight) {
+    const std::vector<uint32_t> first{0, 1};
+    const std::vector<Vec2> places{{0.3f, 0.6f}};
+    for (const float radiance : {1e-4f, 1.0f, 1e5f, 1e7f, 1e12f}) {
+        const std::vector<Vec3> colours{Vec3(radiance, 0.5f * radiance, 0)};
+        Image out, weights;
+        EXPECT_EQ(reconstructScattered({{1, 1}, first, places, colours, {}}, {}, out, weights, {}), 0);
+        EXPECT_NEAR(out.at(0, 0, 0) / radiance, 1, 1e-5) << radiance;
+        EXPECT_NEAR(out.at(1, 0, 0) / radiance, 0.5, 1e-5) << radiance;
     }
 }
 
