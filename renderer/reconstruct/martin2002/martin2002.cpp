@@ -1,44 +1,26 @@
 #include "reconstruct/martin2002/martin2002.h"
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cassert>
 #include <limits>
+#include <set>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "math/hash.h"
 #include "reconstruct/stable/reproject_samples.h"
-#include "reconstruct/stable/tile_order.h"
 #include "reconstruct/stable/verification.h"
 #include "trace/tracer.h"
 
 namespace lumi {
 namespace {
 
-constexpr float kEpsilon = 1e-4f;        ///< as VerificationSettings::epsilon
+constexpr uint64_t kNone = ~uint64_t{0};   ///< no sample landed there
+constexpr int64_t kPixels = 1 << 12;
 constexpr uint32_t kStream = 0x3a472002u;  ///< second word of the samples' keys
 enum Code : uint8_t { kNew, kKept, kMoved };
-
-/// Where a sample of the frame before is now.
-struct Landing {
-    Vec3 inWorld{0};
-    Vec2 place{0};
-    float depth = kInfinity;  ///< infinite: nowhere on the screen
-};
-
-std::vector<Landing> land(const FrameContext& context, const std::vector<SampleLocation>& locations) {
-    std::vector<Landing> landings(locations.size());
-    parallelRanges(static_cast<int64_t>(locations.size()), 1 << 12, [&](int64_t begin, int64_t end) {
-        for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
-            const SampleLocation& location = locations[i];
-            if (!location.isSky() && !context.tracer.has(location.point())) continue;
-            Landing& landing = landings[i];
-            landing.inWorld = placeInWorld(context.tracer, location);
-            if (!placeOnScreen(context.camera, location, landing.inWorld, landing.place)) continue;
-            landing.depth = location.isSky() ? std::numeric_limits<float>::max() : context.camera.project(landing.inWorld).z;
-        }
-    });
-    return landings;
-}
 
 }  // namespace
 
@@ -52,7 +34,13 @@ void Martin2002Module::describe(ParameterVisitor& v) {
 }
 
 void Martin2002Module::resize(Extent2 extent) {
+    constexpr uint64_t kBytesAPixel = 3 * (sizeof(SampleLocation) + sizeof(Vec2) + 12) + (kMostFrames + 1) * 12 + 37;
+    checkMemory("the samples of martin2002", kBytesAPixel * static_cast<uint64_t>(extent.area()));
     extent_ = extent;
+    const auto pixels = [](const PixelRun& run, std::vector<uint32_t>& list) {
+        for (uint32_t p = run.pixel; p < run.pixel + run.count; ++p) list.push_back(p);
+    };
+    order_.make(extent, pixels);
     forget();
 }
 
@@ -61,43 +49,60 @@ void Martin2002Module::forget() {
     taps_.clear();
 }
 
+/// Each sample of the frame before to the pixel where its surface is, the closest winning; ties by the lower index, so that
+/// the threads' order is no part of it.
+void Martin2002Module::project(const FrameContext& context, const Kept& previous) {
+    nearest_.assign(static_cast<size_t>(extent_.area()), kNone);
+    places_.resize(previous.locations.size());
+    parallelRanges(static_cast<int64_t>(previous.locations.size()), kPixels, [&](int64_t begin, int64_t end) {
+        for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+            const SampleLocation& location = previous.locations[i];
+            if (!location.isSky() && !context.tracer.has(location.point())) continue;
+            const Vec3 inWorld = placeInWorld(context.tracer, location);
+            if (!placeOnScreen(context.camera, location, inWorld, places_[i])) continue;
+            float depth = std::numeric_limits<float>::max();
+            if (!location.isSky()) depth = std::max(context.camera.project(inWorld).z, 0.0f);
+            const uint64_t mine = static_cast<uint64_t>(std::bit_cast<uint32_t>(depth)) << 32 | i;
+            const Vec2 place = places_[i];
+            const size_t p = static_cast<size_t>(place.y) * static_cast<size_t>(extent_.width) + static_cast<size_t>(place.x);
+            std::atomic_ref<uint64_t> held(nearest_[p]);
+            uint64_t seen = held.load(std::memory_order_relaxed);
+            while (mine < seen && !held.compare_exchange_weak(seen, mine, std::memory_order_relaxed)) {}
+        }
+    });
+}
+
 /// The closest sample of each pixel; new ones where there is none.
 void Martin2002Module::reproject(const FrameContext& context, const Kept& previous, Kept& next) {
-    const auto pixels = static_cast<size_t>(extent_.area());
-    next.locations.assign(pixels, {});
-    next.places.resize(pixels);
-    next.names.resize(pixels), next.pathsDrawn.assign(pixels, 0), next.ages.assign(pixels, 0);
-    inWorld_.assign(pixels, Vec3(0));
-    codes_.assign(pixels, kNew);
-    std::vector<float> nearest(pixels, kInfinity);
-    const auto width = static_cast<size_t>(extent_.width);
-    for (size_t p = 0; p < pixels; ++p) {
-        next.places[p] = Vec2(p % width, p / width) + 0.5f;
-        next.names[p] = hashCombine(static_cast<uint32_t>(p), static_cast<uint32_t>(context.frame));
-    }
-    const std::vector<Landing> landings = land(context, previous.locations);
-    for (size_t i = 0; i < landings.size(); ++i) {
-        const Landing& landing = landings[i];
-        if (!(landing.depth < kInfinity)) continue;
-        const size_t p = static_cast<size_t>(landing.place.y) * width + static_cast<size_t>(landing.place.x);
-        if (!(landing.depth < nearest[p])) continue;
-        nearest[p] = landing.depth;
-        next.locations[p] = previous.locations[i];
-        next.places[p] = landing.place;
-        next.names[p] = previous.names[i], next.pathsDrawn[p] = previous.pathsDrawn[i], next.ages[p] = previous.ages[i] + 1;
-        inWorld_[p] = landing.inWorld;
-        codes_[p] = kKept;
-    }
+    project(context, previous);
+    const auto pixels = static_cast<size_t>(extent_.area()), width = static_cast<size_t>(extent_.width);
+    next.locations.resize(pixels), next.places.resize(pixels);
+    next.names.resize(pixels), next.pathsDrawn.resize(pixels), next.ages.resize(pixels);
+    inWorld_.resize(pixels), codes_.resize(pixels);
+    parallelRanges(extent_.area(), kPixels, [&](int64_t begin, int64_t end) {
+        for (auto p = static_cast<size_t>(begin); p < static_cast<size_t>(end); ++p) {
+            codes_[p] = nearest_[p] == kNone ? kNew : kKept;
+            if (codes_[p] == kNew) {
+                next.locations[p] = {};
+                next.places[p] = Vec2(p % width, p / width) + 0.5f;
+                next.names[p] = hashCombine(static_cast<uint32_t>(p), static_cast<uint32_t>(context.frame));
+                next.pathsDrawn[p] = next.ages[p] = 0;
+                continue;
+            }
+            const auto i = static_cast<size_t>(nearest_[p] & 0xFFFFFFFFu);
+            next.locations[p] = previous.locations[i];
+            next.places[p] = places_[i];
+            next.names[p] = previous.names[i], next.pathsDrawn[p] = previous.pathsDrawn[i], next.ages[p] = previous.ages[i] + 1;
+            inWorld_[p] = placeInWorld(context.tracer, next.locations[p]);
+        }
+    });
 }
 
 void Martin2002Module::verifyAndShade(const FrameContext& context, Kept& next, Image& image) {
-    std::vector<uint32_t> order;
-    order.reserve(next.locations.size());
-    for (const PixelRun& run : tileOrder(extent_))
-        for (uint32_t p = run.pixel; p < run.pixel + run.count; ++p) order.push_back(p);
+    const std::span<const uint32_t> order = order_.items();
     constexpr int64_t kPaths = 1024;
     parallelRanges(static_cast<int64_t>(order.size()), kPaths, [&](int64_t begin, int64_t end) {
-        verifyAndShade(context, std::span(order).subspan(static_cast<size_t>(begin), static_cast<size_t>(end - begin)), next, image);
+        verifyAndShade(context, order.subspan(static_cast<size_t>(begin), static_cast<size_t>(end - begin)), next, image);
     }, context.stop);
 }
 
@@ -119,15 +124,12 @@ void Martin2002Module::verifyAndShade(const FrameContext& context, std::span<con
     for (size_t k = 0; k < count; ++k) {
         const uint32_t p = pixels[k];
         SampleLocation& location = next.locations[p];
-        const SampleLocation met = hits[k].valid() ? SampleLocation::ofPoint(hits[k].point) : SampleLocation::ofSky(rays[k].direction);
-        const bool same = met.instance == location.instance &&
-                          (location.isSky() || (met.primitive == location.primitive && !context.tracer.isOnLight(hits[k].point)));
-        const bool expected = same || (!met.isSky() && !location.isSky() && std::abs(hits[k].distance - distances[k]) <= kEpsilon * distances[k]);
-        if (!location.isNew() && expected) {
+        constexpr float kEpsilon = VerificationSettings::kEpsilon;
+        if (!location.isNew() && findsSample(context.tracer, location, rays[k].direction, hits[k], distances[k], kEpsilon)) {
             if (!location.isSky()) hits[k] = {location.point(), distances[k]};
         } else {
             if (!location.isNew()) codes_[p] = kMoved, next.ages[p] = 0;
-            location = met;
+            location = hits[k].valid() ? SampleLocation::ofPoint(hits[k].point) : SampleLocation::ofSky(rays[k].direction);
         }
         starts[k].key = {next.names[p], kStream, next.pathsDrawn[p]++};
         starts[k].slot = static_cast<uint32_t>(k);
@@ -138,6 +140,16 @@ void Martin2002Module::verifyAndShade(const FrameContext& context, std::span<con
         for (int c = 0; c < 3; ++c) image.plane(c).data[pixels[k]] = radiance[k][c];
 }
 
+/// The box filter over time.
+void Martin2002Module::average(const std::vector<std::shared_ptr<const Image>>& images, Image& out) const {
+    out.reset(extent_, 3);
+    parallelRanges(static_cast<int64_t>(out.size()), 1 << 14, [&](int64_t begin, int64_t end) {
+        for (const auto& image : images)
+            for (int64_t i = begin; i < end; ++i) out.data()[i] += image->data()[i];
+        for (int64_t i = begin; i < end; ++i) out.data()[i] /= static_cast<float>(images.size());
+    });
+}
+
 RunResult Martin2002Module::run(const FrameContext& context, Image& out) {
     assert(context.camera.extent == extent_);
     if (context.stop.stop_requested()) return RunResult::Stopped;
@@ -145,7 +157,8 @@ RunResult Martin2002Module::run(const FrameContext& context, Image& out) {
     const auto step = history_.begin(context.frame, context.changes.cut);
     {
         const auto measured = context.timer.measure("reprojection");
-        reproject(context, step.previous ? *step.previous : Kept(), step.next);
+        static const Kept none;
+        reproject(context, step.previous ? *step.previous : none, step.next);
     }
     auto image = std::make_shared<Image>(extent_, 3);
     {
@@ -157,14 +170,8 @@ RunResult Martin2002Module::run(const FrameContext& context, Image& out) {
     step.next.images = {image};
     if (step.previous)
         for (const auto& earlier : step.previous->images)
-            if (static_cast<int>(step.next.images.size()) < kMostFrames) step.next.images.push_back(earlier);
-    const auto count = std::min<size_t>(static_cast<size_t>(frames_), step.next.images.size());
-    out.reset(extent_, 3);
-    parallelRanges(static_cast<int64_t>(out.size()), 1 << 14, [&](int64_t begin, int64_t end) {
-        for (size_t n = 0; n < count; ++n)
-            for (int64_t i = begin; i < end; ++i) out.data()[i] += step.next.images[n]->data()[i];
-        for (int64_t i = begin; i < end; ++i) out.data()[i] /= static_cast<float>(count);
-    });
+            if (static_cast<int>(step.next.images.size()) < frames_) step.next.images.push_back(earlier);
+    average(step.next.images, out);
     taps_.keep("unfiltered", *image);
     const auto keep = [&](const char* name, const auto& values) {
         Image* tap = taps_.target(name);
@@ -185,9 +192,14 @@ const Image& Martin2002Module::tap(const std::string& name) const {
 }
 
 size_t Martin2002Module::byteCount() const {
-    const size_t perPixel = sizeof(SampleLocation) + sizeof(Vec2) + 12;
-    return history_.byteCount([&](const Kept& kept) { return kept.locations.size() * perPixel; }) +
-           (history_.empty() ? 0 : history_.current().images.size() * static_cast<size_t>(extent_.area()) * 12) + inWorld_.size() * 13 + taps_.bytes();
+    std::set<const Image*> images;  // those that frames share count once
+    const size_t samples = history_.byteCount([&](const Kept& kept) {
+        for (const auto& image : kept.images) images.insert(image.get());
+        return kept.bytes();
+    });
+    size_t bytes = samples + nearest_.size() * 8 + places_.size() * sizeof(Vec2) + inWorld_.size() * 13 + order_.bytes() + taps_.bytes();
+    for (const Image* image : images) bytes += image->bytes();
+    return bytes;
 }
 
 }  // namespace lumi

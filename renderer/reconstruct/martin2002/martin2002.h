@@ -5,6 +5,7 @@
 #include "frame/history.h"
 #include "reconstruct/captured_taps.h"
 #include "reconstruct/stable/sample_set.h"
+#include "reconstruct/stable/tile_order.h"
 
 namespace lumi {
 
@@ -16,7 +17,9 @@ namespace lumi {
 /// - A sample is traced again through the place where it landed: what the ray meets is the pixel's sample from then on, if
 ///   it is not the surface point that was expected (verification after Adelson and Hodges, which [Martin02] shares).
 /// - Objects move and deform, as in [DalCorso17]; [Martin02] knows moving viewpoints only.
-/// - The box filter averages images, pixel by pixel; `frames` is its length.
+/// - The box filter averages images, pixel by pixel; `frames` is its length. It is linear, and a sample is the colour of
+///   its pixel, wherever in it: the Gaussian over tone-mapped samples that [DalCorso17, sec. 4.4] gives the other methods
+///   is no part of it, so comparisons with them are of filters, too.
 class Martin2002Module : public Module {
 public:
     Martin2002Module();
@@ -33,19 +36,26 @@ private:
     static constexpr int kMostFrames = 8;
     /// A frame: the sample of each pixel, and the images that the box filter of the next one still needs.
     struct Kept {
+        size_t bytes() const { return locations.size() * (sizeof(SampleLocation) + sizeof(Vec2) + 12); }
+
         std::vector<SampleLocation> locations;
         std::vector<Vec2> places;
         std::vector<uint32_t> names, pathsDrawn, ages;
         std::vector<std::shared_ptr<const Image>> images;  ///< the newest first
     };
+    void project(const FrameContext& context, const Kept& previous);
     void reproject(const FrameContext& context, const Kept& previous, Kept& next);
+    void average(const std::vector<std::shared_ptr<const Image>>& images, Image& out) const;
     void verifyAndShade(const FrameContext& context, Kept& next, Image& image);
     void verifyAndShade(const FrameContext& context, std::span<const uint32_t> pixels, Kept& next, Image& image);
 
     Extent2 extent_;
     int frames_ = 3;
     FrameHistory<Kept> history_;
+    std::vector<uint64_t> nearest_;  ///< of each pixel: depth and index of the closest sample that landed there
+    std::vector<Vec2> places_;       ///< of the samples of the frame before, on this frame's screen
     std::vector<Vec3> inWorld_;
+    TileList order_;                 ///< all pixels
     std::vector<uint8_t> codes_;  ///< of the tap `verdicts`
     CapturedTaps taps_;
 };

@@ -1,6 +1,7 @@
 #include "reconstruct/stable/analysis.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -38,7 +39,7 @@ uint32_t anyBit(uint32_t bits, uint32_t random) {
 void DensitySettings::describe(ParameterVisitor& v) {
     v.number("density", density,
              {.label = "Target density",
-              .min = 0.25,
+              .min = 0.5,
               .max = 8,
               .scale = Scale::Log,
               .unit = "samples/px",
@@ -114,11 +115,13 @@ Vec2 newSamplePlace(int index, float jitter, uint32_t random) {
 
 uint32_t pixelRandom(int64_t pixel, uint32_t frame) { return hashCombine(static_cast<uint32_t>(pixel), frame, 0x57ab1eu); }
 
-void analyseSamples(const std::vector<uint32_t>& words, Extent2 extent, const DensitySettings& settings, uint32_t frame,
+bool analyseSamples(const std::vector<uint32_t>& words, Extent2 extent, const DensitySettings& settings, uint32_t frame,
                     std::vector<PixelChange>& changes, float* density, std::stop_token stop) {
     changes.assign(words.size(), {});
+    std::atomic<bool> any{false};
     parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
         std::vector<float> scratch(static_cast<size_t>(extent.width));
+        bool here = false;
         for (int64_t y = begin; y < end; ++y) {
             float* line = density ? density + y * extent.width : scratch.data();
             analysisKernels().densityRow(rowOf(words, extent, static_cast<int>(y), line));
@@ -126,10 +129,14 @@ void analyseSamples(const std::vector<uint32_t>& words, Extent2 extent, const De
                 const int change = sampleChange(line[x], settings);
                 if (change == 0) continue;
                 const int64_t pixel = y * extent.width + x;
-                changes[static_cast<size_t>(pixel)] = changePixel(words[static_cast<size_t>(pixel)], change, pixelRandom(pixel, frame));
+                PixelChange& decided = changes[static_cast<size_t>(pixel)];
+                decided = changePixel(words[static_cast<size_t>(pixel)], change, pixelRandom(pixel, frame));
+                here |= (decided.added | decided.removed) != 0;
             }
         }
+        if (here) any = true;
     }, stop);
+    return any;
 }
 
 }  // namespace lumi

@@ -10,7 +10,7 @@ namespace lumi {
 /// How many samples there shall be [DalCorso17, sec. 4.2].
 struct DensitySettings {
     float density = 1;    ///< d_target, visible samples a pixel
-    float tolerance = 1;  ///< d_tolerance
+    float tolerance = 0.5f;  ///< d_tolerance
     float jitter = 0.5f;  ///< how far new samples lie off the middle of their stratum
 
     void describe(ParameterVisitor& v);
@@ -39,8 +39,9 @@ PixelChange changePixel(uint32_t word, int change, uint32_t random);
 /// up to `jitter` sub-pixels.
 Vec2 newSamplePlace(int subpixel, float jitter, uint32_t random);
 
-/// The changes of all pixels, each decided from the words as they are. `density` (may be null) receives d.
-void analyseSamples(const std::vector<uint32_t>& words, Extent2 extent, const DensitySettings& settings, uint32_t frame,
+/// The changes of all pixels, each decided from the words as they are. `density` (may be null) receives d. Returns whether
+/// any pixel changes.
+bool analyseSamples(const std::vector<uint32_t>& words, Extent2 extent, const DensitySettings& settings, uint32_t frame,
                     std::vector<PixelChange>& changes, float* density, std::stop_token stop);
 
 /// The random word of a pixel in a frame.

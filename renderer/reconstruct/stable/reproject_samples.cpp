@@ -15,13 +15,15 @@ size_t slotOf(uint32_t target) { return target & ~ReprojectedSamples::kOccluded;
 /// Where each sample lands, and whether it was occluded.
 void project(const FrameContext& context, const SampleSet& previous, ReprojectedSamples& out) {
     const CameraPose& camera = context.camera;
+    const bool still = !context.changes.any();
     const auto width = static_cast<uint32_t>(camera.extent.width);
     const auto targetOf = [&](size_t i) -> uint32_t {
         const SampleLocation& location = previous.locations[i];
         Vec2& place = out.places[i];
         if (!location.isSky() && !context.tracer.has(location.point())) return ReprojectedSamples::kNowhere;
         out.inWorld[i] = placeInWorld(context.tracer, location);
-        if (!placeOnScreen(camera, location, out.inWorld[i], place)) return ReprojectedSamples::kNowhere;
+        if (still) place = previous.places[i];
+        else if (!placeOnScreen(camera, location, out.inWorld[i], place)) return ReprojectedSamples::kNowhere;
         const auto x = static_cast<uint32_t>(place.x), y = static_cast<uint32_t>(place.y);
         return (y * width + x) * subpixel::kCount + static_cast<uint32_t>(subpixel::at(place - Vec2(x, y)));
     };

@@ -23,7 +23,8 @@ struct ReprojectedSamples {
 
 /// Projects every sample of `previous` to where its surface point is now and stores it there by Algorithm 1, in the order
 /// in which the samples lie, so that which of two stays never depends on threads. Samples off the image, behind the
-/// camera, of surfaces that the scene no longer has or that have shrunk to nothing a number can name are dropped.
+/// camera, of surfaces that the scene no longer has or that have shrunk to nothing a number can name are dropped. Where
+/// nothing has changed since the frame before samples stay in their places, to the bit.
 /// Returns false if stopped.
 bool reprojectSamples(const FrameContext& context, const SampleSet& previous, ReprojectedSamples& out);
 

@@ -2,6 +2,7 @@
 #include "reconstruct/stable/analysis.h"
 #include "reconstruct/stable/reproject_samples.h"
 #include "reconstruct/stable/sample_set.h"
+#include "reconstruct/stable/tile_order.h"
 
 namespace lumi {
 
@@ -25,13 +26,17 @@ struct SampleFrame {
     std::vector<PixelChange> changes;  ///< a pixel
     ReprojectedSamples reprojected;
     std::vector<SampleLocation> blockers;  ///< of occluded samples
-    std::vector<uint32_t> pixelOf;         ///< of a sample
+    std::vector<uint32_t> chunkSums;       ///< of gatherSamples()
+    TileList list;                         ///< of samples to verify, then to shade
+    bool newOnly = false;                  ///< nothing has changed: older samples keep their verdicts
 
+    bool isVerified(uint32_t i) const { return !newOnly || verdicts[i] == Verdict::New; }
     size_t bytes() const;
 };
 
 /// Makes the samples of the frame: those of `previous` that reprojection and analysis kept, in their new places, and the
-/// new ones, whose location is still to be found. `random` names the frame.
+/// new ones, whose location is still to be found. `random` names the frame. Throws Error(Resources) if they would pass the
+/// memory limit.
 void gatherSamples(const SampleSet& previous, const DensitySettings& settings, uint32_t random, SampleFrame& frame, SampleSet& next);
 
 }  // namespace lumi

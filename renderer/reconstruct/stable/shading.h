@@ -7,29 +7,37 @@ namespace lumi {
 /// How samples gather light [DalCorso17, sec. 6.1].
 struct GatheringSettings {
     float indirectAlpha = 0.1f;  ///< weight of a new path in the average, once it has 1/alpha of them
-    bool averageDirect = false;  ///< direct light goes into the same average
+    bool averageDirect = false;  ///< all else goes into an average, too
     bool converge = true;        ///< while nothing changes all is an arithmetic mean
 
     void describe(ParameterVisitor& v);
 };
 
-/// Traces one path from each visible sample on: direct light is that of this frame, indirect light an exponential
-/// average over the sample's life; while nothing changes both are arithmetic means. Sets lights and colours.
-/// Returns false if stopped.
-bool shadeSamples(const FrameContext& context, const GatheringSettings& settings, SampleFrame& frame, SampleSet& set);
+/// What is known of the light since the frame before.
+struct GatheringState {
+    bool still = false;    ///< nothing has changed
+    bool restart = false;  ///< averages begin anew: they hold light that is no more
+};
 
-/// Adds the light of one more path to what a sample has gathered. `still`: nothing has changed since the frame before.
+/// Traces one path from each visible sample on. Light that does not depend on the view, diffuse and indirect, is an
+/// exponential average over the sample's life; all else is that of this frame. While nothing changes both are arithmetic
+/// means. Sets lights and colours. Returns false if stopped.
+bool shadeSamples(const FrameContext& context, const GatheringSettings& settings, const GatheringState& state, SampleFrame& frame,
+                  SampleSet& set);
+
+/// Adds the light of one more path to what a sample has gathered: `indirect` is what is averaged, `direct` all else. `still`: nothing has changed since the frame before.
 void gather(SampleLight& light, const Vec3& direct, const Vec3& indirect, bool still, const GatheringSettings& settings);
 
-/// Paths of one sample a slot, split into light that met at most one surface and all else.
-class DirectObserver : public PathObserver {
+/// Paths of one sample a slot: the light that met at most one surface, and which part of all else came to that surface's
+/// diffuse lobe.
+class SplitObserver : public PathObserver {
 public:
-    explicit DirectObserver(std::span<Vec3> direct) : direct_(direct) {}
-    ObserverNeeds needs() const override { return {2, 0, 0, 0, false}; }
+    SplitObserver(std::span<Vec3> direct, std::span<Vec3> diffuseShare) : direct_(direct), diffuseShare_(diffuseShare) {}
+    ObserverNeeds needs() const override { return {2, 0, 0, 1, false}; }
     void bounce(const BounceBatch& batch) override;
 
 private:
-    std::span<Vec3> direct_;  ///< by slot
+    std::span<Vec3> direct_, diffuseShare_;  ///< by slot
 };
 
 }  // namespace lumi

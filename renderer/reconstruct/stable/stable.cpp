@@ -1,6 +1,7 @@
 #include "reconstruct/stable/stable.h"
 
 #include <cassert>
+#include <limits>
 
 #include "base/memory.h"
 #include "math/hash.h"
@@ -20,8 +21,11 @@ void StableModule::describe(ParameterVisitor& v) {
 }
 
 void StableModule::resize(Extent2 extent) {
-    constexpr uint64_t kBytesAPixel = 600;  // three frames of samples at the default density, and what works on them
-    checkMemory("the samples of stable ray tracing", kBytesAPixel * static_cast<uint64_t>(extent.area()));
+    // Three frames of samples and what works on them. A quarter more than the target are held, most of them occluded.
+    constexpr uint64_t kBytesAPixel = 110;
+    constexpr uint64_t kBytesASample = 3 * (sizeof(SampleLocation) + sizeof(Vec2) + sizeof(SampleLight)) + 90;
+    const auto samples = static_cast<uint64_t>(1.25 * density_.density * static_cast<double>(extent.area()));
+    checkMemory("the samples of stable ray tracing", kBytesAPixel * static_cast<uint64_t>(extent.area()) + kBytesASample * samples);
     extent_ = extent;
     forget();
 }
@@ -31,7 +35,6 @@ void StableModule::forget() {
     temporal_.forget();
     taps_.clear();
     counts_ = {};
-    filledPixels_ = 0;
     lineage_ = {};
 }
 
@@ -42,19 +45,21 @@ RunResult StableModule::run(const FrameContext& context, Image& out) {
     const auto step = history_.begin(context.frame, context.changes.cut);
     static const SampleSet kNone;
     SampleSet& samples = step.next.samples;
-    if (!placeSamples(context, step.previous ? step.previous->samples : kNone, samples)) return RunResult::Stopped;
+    const GatheringState light = lightState(context, step.previous, step.next);
+    if (!placeSamples(context, step.previous ? step.previous->samples : kNone, step.next)) return RunResult::Stopped;
     VerificationCounts counts;
+    frame_.newOnly = light.still && step.previous && step.previous->epsilon == verification_.epsilon;
+    step.next.epsilon = verification_.epsilon;
     {
         const auto measured = context.timer.measure("verification");
         if (!verifySamples(context, verification_, frame_, samples, counts)) return RunResult::Stopped;
     }
     {
         const auto measured = context.timer.measure("shading");
-        if (!shadeSamples(context, gathering_, frame_, samples)) return RunResult::Stopped;
+        if (!shadeSamples(context, gathering_, light, frame_, samples)) return RunResult::Stopped;
     }
     if (!reconstruct(context, samples, out)) return RunResult::Stopped;
     if (!temporal_.run(context, motion_, out)) return RunResult::Stopped;
-    step.next.stillFrames = step.previous && !context.changes.any() ? step.previous->stillFrames + 1 : 1;
     keepTaps(context, samples);
     inspect(context, samples);
     counts_ = counts;
@@ -64,8 +69,23 @@ RunResult StableModule::run(const FrameContext& context, Image& out) {
     return RunResult::Completed;
 }
 
+/// What has changed for the light, and since when it has not.
+GatheringState StableModule::lightState(const FrameContext& context, const Kept* previous, Kept& next) const {
+    const Changes& changes = context.changes;
+    GatheringState state;
+    state.still = next.still = !changes.any();
+    // Without a frame before, all samples are new: nothing in them is old.
+    constexpr uint64_t kEver = std::numeric_limits<uint64_t>::max() / 2;
+    next.steadyFrames = !previous ? kEver : changes.objects || changes.lights ? 0 : previous->steadyFrames + 1;
+    const bool stopped = state.still && previous && !previous->still;
+    const bool holdsOld = static_cast<float>(next.steadyFrames) < 4 / gathering_.indirectAlpha;
+    state.restart = changes.materials || changes.sampling || (gathering_.converge && stopped && holdsOld);
+    next.meanFrames = state.still && previous && !state.restart ? previous->meanFrames + 1 : 1;
+    return state;
+}
+
 /// Reprojection and analysis: which samples the frame has.
-bool StableModule::placeSamples(const FrameContext& context, const SampleSet& previous, SampleSet& next) {
+bool StableModule::placeSamples(const FrameContext& context, const SampleSet& previous, Kept& next) {
     {
         const auto measured = context.timer.measure("reprojection");
         if (!reprojectSamples(context, previous, frame_.reprojected)) return false;
@@ -73,20 +93,19 @@ bool StableModule::placeSamples(const FrameContext& context, const SampleSet& pr
     const auto measured = context.timer.measure("analysis");
     const uint32_t random = hashCombine(static_cast<uint32_t>(context.frame), context.sampling.seed);
     if (taps_.wants("density") && localDensity_.extent() != extent_) localDensity_.reset(extent_, 1);
-    analyseSamples(frame_.reprojected.words, extent_, density_, random, frame_.changes,
-                   taps_.wants("density") ? localDensity_.data() : nullptr, context.stop);
+    const bool changed = analyseSamples(frame_.reprojected.words, extent_, density_, random, frame_.changes,
+                                        taps_.wants("density") ? localDensity_.data() : nullptr, context.stop);
     if (context.stop.stop_requested()) return false;
-    next.extent = extent_;
-    gatherSamples(previous, density_, random, frame_, next);
+    if (changed) next.meanFrames = 1;  // new samples have one path
+    next.samples.extent = extent_;
+    gatherSamples(previous, density_, random, frame_, next.samples);
     return true;
 }
 
 bool StableModule::reconstruct(const FrameContext& context, const SampleSet& samples, Image& out) {
     const auto measured = context.timer.measure("reconstruction");
-    const int64_t filled = reconstructScattered({extent_, samples.first, samples.places, frame_.colours, frame_.hidden}, scattered_, out,
-                                                weights_, context.stop);
-    if (filled < 0) return false;
-    filledPixels_ = filled;
+    if (reconstructScattered({extent_, samples.first, samples.places, frame_.colours, frame_.hidden}, scattered_, out, weights_, context.stop) < 0)
+        return false;
     if (motion_.extent() != extent_) motion_.reset(extent_, 2);
     if (temporal_.enabled() || taps_.wants("sampleMotion")) longestMotions(samples.first, frame_.motions, frame_.hidden, motion_);
     taps_.keep("reconstructed", out);
@@ -100,7 +119,7 @@ const Image& StableModule::tap(const std::string& name) const {
 
 Convergence StableModule::convergence() const {
     const bool converges = gathering_.converge && !temporal_.enabled() && !history_.empty();
-    return {converges ? history_.current().stillFrames : 0, 0};
+    return {converges ? history_.current().meanFrames : 0, 0};
 }
 
 size_t StableModule::byteCount() const {

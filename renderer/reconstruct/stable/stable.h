@@ -22,11 +22,21 @@ namespace lumi {
 /// - Algorithm 1 keeps the occlusion bit of an occluded sample in an empty sub-pixel, as the text says.
 /// - Visibility is traced for all samples first, shading follows for those that are visible: both work on lists without
 ///   gaps. `batches` has the paper's way.
-/// - Samples of the same triangle count as visible wherever the ray meets it, whatever epsilon.
-/// - A sample that its ray does not find is evicted. The density's tolerance is at most the target, or nothing would ever
+/// - Samples of the same triangle count as visible wherever the ray meets it, whatever epsilon; those on the body of a
+///   light if they face the ray as the hit does. All rays to a sample pass the same blended surfaces or stop at them, so
+///   that it is not occluded now and then: a still view of such converges to samples that have each drawn once.
+/// - A sample that its ray does not find is evicted. If all of a pixel are occluded the first moves to what occludes it.
+/// - The density's tolerance is 0.5, not 1: a view that zooms in spreads samples, and at 1 the density may fall far below
+///   the target, for pixels act only where the window is empty. It is at most the target, or nothing would ever
 ///   be added to an empty screen. At the image's border density counts the area inside.
-/// - Indirect light has warmed up as a mean until it has 1/alpha paths; while nothing changes at all, light is an
-///   arithmetic mean and verdicts stay.
+/// - Samples have places, not cells of 8 x 8. Those of the sky are lost when an orthographic camera moves: it sees one
+///   direction, which tells no place.
+/// - Directions of indirect light are those of the integrator (BSDF sampling), and what came to other lobes than the
+///   diffuse one stays out of the average, for it depends on the view: it is that of the frame. The average has warmed up as a mean until it has
+///   1/alpha paths. An edit of materials or of paths begins it anew. While nothing changes at all, light is an arithmetic
+///   mean and verdicts stay; that mean goes on from the average, but begins anew if a light or an object moved within the
+///   last 4/alpha frames, so that no light of then stays in it.
+/// - Temporal integration clips as filter/taa.h does.
 /// - The lens is a pinhole and the shutter an instant: samples have one place on the screen.
 class StableModule : public Module {
 public:
@@ -45,14 +55,17 @@ public:
     /// Of the last completed run.
     const SampleSet& samples() const { return history_.current().samples; }
     const VerificationCounts& verification() const { return counts_; }
-    int64_t filledPixels() const { return filledPixels_; }
 
 private:
     struct Kept {
         SampleSet samples;
-        uint64_t stillFrames = 0;  ///< since anything changed
+        uint64_t meanFrames = 0;    ///< whose paths are in the mean of each visible sample
+        uint64_t steadyFrames = 0;  ///< since a light or an object moved
+        bool still = false;         ///< nothing had changed
+        float epsilon = 0;          ///< that verdicts were found with
     };
-    bool placeSamples(const FrameContext& context, const SampleSet& previous, SampleSet& next);
+    bool placeSamples(const FrameContext& context, const SampleSet& previous, Kept& next);
+    GatheringState lightState(const FrameContext& context, const Kept* previous, Kept& next) const;
     bool reconstruct(const FrameContext& context, const SampleSet& samples, Image& out);
     void keepTaps(const FrameContext& context, const SampleSet& samples);
     void inspect(const FrameContext& context, const SampleSet& samples);
@@ -67,7 +80,6 @@ private:
     SampleFrame frame_;
     Image weights_, motion_, localDensity_;
     VerificationCounts counts_;
-    int64_t filledPixels_ = 0;
     CapturedTaps taps_;
     Lineage lineage_;
 };

@@ -3,17 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "reconstruct/stable/stable.h"
 
 namespace lumi {
 namespace {
+
+constexpr int64_t kPixels = 1 << 14;
 
 /// Fills a tap of one channel with a value a pixel.
 template <class Value>
 void fill(Image* out, Extent2 extent, Value value) {
     if (!out) return;
     out->reset(extent, 1);
-    for (int64_t pixel = 0; pixel < extent.area(); ++pixel) out->data()[pixel] = value(static_cast<size_t>(pixel));
+    parallelRanges(extent.area(), kPixels, [&](int64_t begin, int64_t end) {
+        for (int64_t pixel = begin; pixel < end; ++pixel) out->data()[pixel] = value(static_cast<size_t>(pixel));
+    });
 }
 
 /// Mean of `value` over a pixel's visible samples; 0 without any.
@@ -37,14 +42,19 @@ float verdictCode(const SampleFrame& frame, const SampleSet& samples, size_t pix
 }
 
 /// Lanes of the packets that went to a pixel's samples.
-float lanesOf(const SampleSet& samples, VerificationSettings::Batches batches, size_t pixel) {
-    const auto countOf = [&](size_t p) { return samples.first[p + 1] - samples.first[p]; };
-    if (batches == VerificationSettings::Batches::Dense) return static_cast<float>(countOf(pixel));
+float lanesOf(const SampleFrame& frame, const SampleSet& samples, VerificationSettings::Batches batches, size_t pixel) {
+    // Bit k: the k-th sample of a pixel has a ray.
+    const auto raysOf = [&](size_t p) {
+        uint32_t rays = 0;
+        for (uint32_t i = samples.first[p]; i < samples.first[p + 1]; ++i) rays |= frame.isVerified(i) ? 1u << (i - samples.first[p]) : 0;
+        return rays;
+    };
+    if (batches == VerificationSettings::Batches::Dense) return static_cast<float>(std::popcount(raysOf(pixel)));
     const auto width = static_cast<size_t>(samples.extent.width);
     const size_t row = pixel / width * width, left = (pixel - row) / 16 * 16;
-    uint32_t most = 0;
-    for (size_t x = left; x < std::min(left + 16, width); ++x) most = std::max(most, countOf(row + x));
-    return static_cast<float>(most);
+    uint32_t packets = 0;
+    for (size_t x = left; x < std::min(left + 16, width); ++x) packets |= raysOf(row + x);
+    return static_cast<float>(std::popcount(packets));
 }
 
 void drawChanges(const SampleFrame& frame, Extent2 extent, Image* out) {
@@ -110,7 +120,7 @@ void StableModule::keepTaps(const FrameContext& context, const SampleSet& sample
     fill(taps_.target("verdicts"), extent_, [&](size_t p) { return verdictCode(frame_, samples, p); });
     fill(taps_.target("indirectCount"), extent_,
          [&](size_t p) { return meanOfVisible(frame_, samples, p, [](const SampleLight& l) { return l.indirectCount; }); });
-    fill(taps_.target("lanes"), extent_, [&](size_t p) { return lanesOf(samples, verification_.batches, p); });
+    fill(taps_.target("lanes"), extent_, [&](size_t p) { return lanesOf(frame_, samples, verification_.batches, p); });
     taps_.keep("sampleMotion", motion_);
 }
 
@@ -128,9 +138,8 @@ void StableModule::inspect(const FrameContext& context, const SampleSet& samples
             const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(extent_.width) + static_cast<size_t>(x);
             for (uint32_t i = samples.first[pixel]; i < samples.first[pixel + 1]; ++i) {
                 const Vec2 off = samples.places[i] - centre;
-                float weight = std::exp(-glm::dot(off, off) / (2 * sqr(scattered_.sigma)));
-                if (box) weight = Pixel{x, y} == *at ? 1.0f : 0.0f;
-                if (frame_.hidden[i]) weight = 0;
+                const bool outside = box && Pixel{x, y} != *at;
+                const float weight = frame_.hidden[i] || outside ? 0 : scatteredWeight(scattered_, off, frame_.colours[i]);
                 sum += weight;
                 const char* kNames[] = {"new", "visible", "occluded", "moved to what occludes it", "missed"};
                 lineage_.rows.push_back({"reconstruction", {x, y}, weight,

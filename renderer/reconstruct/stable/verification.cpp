@@ -1,7 +1,6 @@
 #include "reconstruct/stable/verification.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -15,26 +14,31 @@ namespace {
 constexpr int64_t kRays = 1024;
 constexpr uint32_t kIdle = ~0u;
 
-/// Samples in the order in which their rays are traced, kIdle where a packet has a lane without one.
-std::vector<uint32_t> listWork(const SampleFrame& frame, const SampleSet& set, VerificationSettings::Batches batches, bool newOnly) {
-    std::vector<uint32_t> work;
-    work.reserve(set.size());
-    const auto wanted = [&](uint32_t i) { return !newOnly || frame.verdicts[i] == Verdict::New; };
-    for (const PixelRun& run : tileOrder(set.extent)) {
+/// Samples in the order in which their rays are traced, kIdle where a packet has a lane without one. Packets without any
+/// ray are left out.
+std::span<const uint32_t> listWork(SampleFrame& frame, const SampleSet& set, VerificationSettings::Batches batches) {
+    const auto dense = [&](const PixelRun& run, std::vector<uint32_t>& work) {
+        for (uint32_t i = set.first[run.pixel]; i < set.first[run.pixel + run.count]; ++i)
+            if (frame.isVerified(i)) work.push_back(i);
+    };
+    const auto perPixel = [&](const PixelRun& run, std::vector<uint32_t>& work) {
         const uint32_t* first = set.first.data() + run.pixel;
-        if (batches == VerificationSettings::Batches::Dense) {
-            for (uint32_t i = first[0]; i < first[run.count]; ++i)
-                if (wanted(i)) work.push_back(i);
-            continue;
-        }
         constexpr uint32_t kLanes = 16;
         uint32_t most = 0;
         for (uint32_t p = 0; p < run.count; ++p) most = std::max(most, first[p + 1] - first[p]);
-        for (uint32_t k = 0; k < most; ++k)
-            for (uint32_t p = 0; p < kLanes; ++p)
-                work.push_back(p < run.count && first[p] + k < first[p + 1] && wanted(first[p] + k) ? first[p] + k : kIdle);
-    }
-    return work;
+        for (uint32_t k = 0; k < most; ++k) {
+            const size_t begin = work.size();
+            bool any = false;
+            for (uint32_t p = 0; p < kLanes; ++p) {
+                const bool flies = p < run.count && first[p] + k < first[p + 1] && frame.isVerified(first[p] + k);
+                work.push_back(flies ? first[p] + k : kIdle);
+                any |= flies;
+            }
+            if (!any) work.resize(begin);
+        }
+    };
+    if (batches == VerificationSettings::Batches::Dense) return frame.list.make(set.extent, dense);
+    return frame.list.make(set.extent, perPixel);
 }
 
 /// A new sample's location: what its ray met.
@@ -51,12 +55,6 @@ void locate(const FrameContext& context, const Ray& ray, const Hit& hit, uint32_
     frame.motions[i] = Vec2(surfaceMotion(camera, previous, frame.inWorld[i], context.tracer.previousPosition(hit.point)));
 }
 
-Verdict judge(const Tracer& tracer, const SampleLocation& location, const Hit& hit, float distance, float epsilon) {
-    if (!hit.valid()) return location.isSky() ? Verdict::Visible : Verdict::Missed;
-    if (location.isSky()) return Verdict::Occluded;
-    const bool same = hit.point.instance == location.instance && hit.point.primitive == location.primitive && !tracer.isOnLight(hit.point);
-    return same || hit.distance >= distance * (1 - epsilon) ? Verdict::Visible : Verdict::Occluded;
-}
 
 /// One stretch of the list.
 void verifyRange(const FrameContext& context, std::span<const uint32_t> work, float epsilon, SampleFrame& frame, SampleSet& set) {
@@ -64,14 +62,14 @@ void verifyRange(const FrameContext& context, std::span<const uint32_t> work, fl
     std::vector<Ray> rays(work.size());
     std::vector<Hit> hits(work.size());
     std::vector<float> distances(work.size());
-    std::vector<uint32_t> ids(work.size());
+    std::vector<uint32_t> ids(work.size(), 0);
     for (size_t k = 0; k < work.size(); ++k) {
         const uint32_t i = work[k];
         rays[k].tmin = 1, rays[k].tmax = 0;
         if (i == kIdle) continue;
         rays[k] = rayToSample(camera, set.locations[i], set.places[i], frame.inWorld[i], distances[k]).ray;
         rays[k].tmax = distances[k] * (1 + epsilon);
-        ids[k] = set.lights[i].name;  // a sample on a blended surface finds it again
+        ids[k] = set.lights[i].name;
     }
     context.tracer.closestHits(rays, hits, context.stop, true, ids);
     for (size_t k = 0; k < work.size(); ++k) {
@@ -81,7 +79,8 @@ void verifyRange(const FrameContext& context, std::span<const uint32_t> work, fl
             locate(context, rays[k], hits[k], i, frame, set);
             continue;
         }
-        frame.verdicts[i] = judge(context.tracer, set.locations[i], hits[k], distances[k], epsilon);
+        const bool found = findsSample(context.tracer, set.locations[i], rays[k].direction, hits[k], distances[k], epsilon);
+        frame.verdicts[i] = found ? Verdict::Visible : hits[k].valid() ? Verdict::Occluded : Verdict::Missed;
         if (frame.verdicts[i] == Verdict::Occluded) frame.blockers[i] = SampleLocation::ofPoint(hits[k].point);
     }
 }
@@ -134,6 +133,15 @@ void VerificationSettings::describe(ParameterVisitor& v) {
                       "16 pixels with idle lanes as in the paper, whose sec. 7 leaves the balancing open"});
 }
 
+bool findsSample(const Tracer& tracer, const SampleLocation& location, const Vec3& direction, const Hit& hit, float distance, float epsilon) {
+    if (location.isSky() || !hit.valid()) return location.isSky() && !hit.valid();
+    if (hit.point.instance != location.instance || hit.point.primitive != location.primitive)
+        return hit.distance >= distance * (1 - epsilon) && hit.distance <= distance * (1 + epsilon);
+    if (!tracer.isOnLight(hit.point)) return true;
+    const auto faces = [&](const SurfacePoint& point) { return glm::dot(tracer.normal(point), direction) < 0; };
+    return faces(location.point()) == faces(hit.point);
+}
+
 CameraPose pinhole(const CameraPose& camera) {
     CameraPose pose = camera;
     pose.aperture = 0;
@@ -165,9 +173,9 @@ PathStart rayToSample(const CameraPose& camera, const SampleLocation& location, 
 
 bool verifySamples(const FrameContext& context, const VerificationSettings& settings, SampleFrame& frame, SampleSet& set,
                    VerificationCounts& counts) {
-    const std::vector<uint32_t> work = listWork(frame, set, settings.batches, !context.changes.any());
+    const std::span<const uint32_t> work = listWork(frame, set, settings.batches);
     parallelRanges(static_cast<int64_t>(work.size()), kRays, [&](int64_t begin, int64_t end) {
-        verifyRange(context, std::span(work).subspan(static_cast<size_t>(begin), static_cast<size_t>(end - begin)), settings.epsilon, frame, set);
+        verifyRange(context, work.subspan(static_cast<size_t>(begin), static_cast<size_t>(end - begin)), settings.epsilon, frame, set);
     }, context.stop);
     if (context.stop.stop_requested()) return false;
     counts.lanes = work.size();

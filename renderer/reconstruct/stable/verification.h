@@ -11,7 +11,8 @@ struct VerificationSettings {
     /// samples; packets are the k-th samples of 16 pixels and have idle lanes where a pixel has fewer.
     enum class Batches { Dense, PerPixel };
 
-    float epsilon = 1e-4f;  ///< how far off a hit may be, in parts of the sample's distance
+    static constexpr float kEpsilon = 1e-4f;
+    float epsilon = kEpsilon;  ///< how far off a hit may be, in parts of the sample's distance
     Batches batches = Batches::Dense;
 
     void describe(ParameterVisitor& v);
@@ -25,11 +26,17 @@ struct VerificationCounts {
 
 /// Traces a ray to each sample: new ones to whatever they meet, others up to where they should be; sets verdicts, the
 /// words' occlusion, and the locations, positions and motions of samples that are new or have moved to what occludes
-/// them. Where nothing has changed since the frame before the verdicts of then stand and only new samples are traced.
+/// them. With frame.newOnly only new samples are traced, and all others keep the verdicts that they come with.
 /// A sample that was missed keeps its bits until the next reprojection drops it; it is hidden and counts as occluded.
+/// A sample's name draws which blended surfaces its rays pass, so that the draw lasts its life.
 /// Returns false if stopped.
 bool verifySamples(const FrameContext& context, const VerificationSettings& settings, SampleFrame& frame, SampleSet& set,
                    VerificationCounts& counts);
+
+/// Does `hit` of the ray along unit `direction` to a sample find it? `distance` is that of the sample. A hit on its
+/// triangle does, wherever the ray meets it; on any other surface it may be off by `epsilon` of the distance. The bodies of
+/// lights are convex: of the points of one that lie behind each other the ray meets that which faces it.
+bool findsSample(const Tracer& tracer, const SampleLocation& location, const Vec3& direction, const Hit& hit, float distance, float epsilon);
 
 /// The camera as samples are seen: without lens and shutter.
 CameraPose pinhole(const CameraPose& camera);

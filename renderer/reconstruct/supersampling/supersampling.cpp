@@ -4,9 +4,9 @@
 #include <cassert>
 #include <cmath>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "frame/motion.h"
-#include "reconstruct/stable/tile_order.h"
 #include "reconstruct/stable/verification.h"
 #include "trace/tracer.h"
 
@@ -52,7 +52,10 @@ void SupersamplingModule::describe(ParameterVisitor& v) {
 }
 
 void SupersamplingModule::resize(Extent2 extent) {
+    const uint64_t aPixel = 40 + static_cast<uint64_t>(samplesPerPixel_) * (2 * sizeof(Vec2) + sizeof(Vec3) + 8);
+    checkMemory("the samples of supersampling", aPixel * static_cast<uint64_t>(extent.area()));
     extent_ = extent;
+    listedSamples_ = 0;
     forget();
 }
 
@@ -66,36 +69,42 @@ Vec2 SupersamplingModule::placeInPixel(int s, int count, Vec2 jitter) {
     return glm::min(place - glm::floor(place), Vec2(0.99999f));
 }
 
-bool SupersamplingModule::trace(const FrameContext& context) {
+/// What depends on the extent and the number of samples alone.
+void SupersamplingModule::listSamples() {
+    if (listedSamples_ == samplesPerPixel_) return;
     const auto spp = static_cast<uint32_t>(samplesPerPixel_);
     const auto pixels = static_cast<size_t>(extent_.area());
     first_.resize(pixels + 1);
     for (size_t p = 0; p <= pixels; ++p) first_[p] = static_cast<uint32_t>(p) * spp;
     places_.resize(pixels * spp), colours_.resize(pixels * spp), motions_.resize(pixels * spp);
-    const Vec2 jitter = temporal_.enabled() ? frameJitter(static_cast<uint64_t>(context.frame), context.sampling.seed) : Vec2(0);
-    std::vector<uint32_t> list;  // of samples, in the order in which they are traced
-    list.reserve(places_.size());
-    for (const PixelRun& run : tileOrder(extent_))
+    list_.make(extent_, [spp](const PixelRun& run, std::vector<uint32_t>& list) {
         for (uint32_t s = 0; s < spp; ++s)
-            for (uint32_t p = run.pixel; p < run.pixel + run.count; ++p) {
-                const auto width = static_cast<uint32_t>(extent_.width);
-                places_[p * spp + s] = Vec2(p % width, p / width) + placeInPixel(static_cast<int>(s), samplesPerPixel_, jitter);
-                list.push_back(p * spp + s);
-            }
+            for (uint32_t p = run.pixel; p < run.pixel + run.count; ++p) list.push_back(p * spp + s);
+    });
+    listedSamples_ = samplesPerPixel_;
+}
+
+bool SupersamplingModule::trace(const FrameContext& context) {
+    listSamples();
+    const Vec2 jitter = temporal_.enabled() ? frameJitter(static_cast<uint64_t>(context.frame), context.sampling.seed) : Vec2(0);
+    Vec2 within[kMost];
+    for (int s = 0; s < samplesPerPixel_; ++s) within[s] = placeInPixel(s, samplesPerPixel_, jitter);
+    const std::span<const uint32_t> list = list_.items();
     constexpr int64_t kPaths = 1024;
     parallelRanges(static_cast<int64_t>(list.size()), kPaths, [&](int64_t begin, int64_t end) {
-        traceRun(context, std::span(list).subspan(static_cast<size_t>(begin), static_cast<size_t>(end - begin)));
+        traceRun(context, list.subspan(static_cast<size_t>(begin), static_cast<size_t>(end - begin)), within);
     }, context.stop);
     return !context.stop.stop_requested();
 }
 
-void SupersamplingModule::traceRun(const FrameContext& context, std::span<const uint32_t> samples) {
+void SupersamplingModule::traceRun(const FrameContext& context, std::span<const uint32_t> samples, const Vec2* within) {
     const CameraPose camera = pinhole(context.camera);
     const auto spp = static_cast<uint32_t>(samplesPerPixel_), width = static_cast<uint32_t>(extent_.width);
     std::vector<PathStart> starts(samples.size());
     std::vector<Vec3> radiance(samples.size());
     for (size_t k = 0; k < samples.size(); ++k) {
         const uint32_t pixel = samples[k] / spp, s = samples[k] % spp;
+        places_[samples[k]] = Vec2(pixel % width, pixel / width) + within[s];
         starts[k] = cameraStart(camera, places_[samples[k]], Vec2(0.5f), 0);
         starts[k].key = {pixel % width, pixel / width, static_cast<uint32_t>(context.frame) * spp + s};
         starts[k].slot = static_cast<uint32_t>(k);
@@ -137,7 +146,7 @@ const Image& SupersamplingModule::tap(const std::string& name) const {
 }
 
 size_t SupersamplingModule::byteCount() const {
-    return first_.size() * 4 + places_.size() * (2 * sizeof(Vec2) + sizeof(Vec3)) + weights_.bytes() + motion_.bytes() + temporal_.bytes() +
+    return first_.size() * 4 + list_.bytes() + places_.size() * (2 * sizeof(Vec2) + sizeof(Vec3)) + weights_.bytes() + motion_.bytes() + temporal_.bytes() +
            taps_.bytes();
 }
 

@@ -2,6 +2,7 @@
 #include "filter/scattered.h"
 #include "reconstruct/captured_taps.h"
 #include "reconstruct/stable/temporal_integration.h"
+#include "reconstruct/stable/tile_order.h"
 
 namespace lumi {
 
@@ -10,8 +11,9 @@ namespace lumi {
 /// from frame to frame, which makes it full temporal antialiasing. It reads no signals: it places its own rays, from a
 /// pinhole and at the shutter's opening, as `stable` does.
 ///
-/// Differs from the paper, which does not say where the samples are: nowhere else. They form a rook pattern, one in each
-/// row and column of spp x spp cells, the same in all pixels; a single one is in the middle.
+/// Differs from the paper, which does not say where the samples are: they form a rook pattern, one in each row and column
+/// of spp x spp cells, the same in all pixels; a single one is in the middle. Temporal integration clips as filter/taa.h
+/// does. Both filter tone-mapped colours (`tone-mapped`), which is a bias against references that are linear.
 class SupersamplingModule : public Module {
 public:
     SupersamplingModule();
@@ -28,14 +30,17 @@ public:
     static Vec2 placeInPixel(int s, int count, Vec2 jitter);
 
 private:
+    void listSamples();
     bool trace(const FrameContext& context);
-    void traceRun(const FrameContext& context, std::span<const uint32_t> pixels);
+    void traceRun(const FrameContext& context, std::span<const uint32_t> samples, const Vec2* within);
 
     Extent2 extent_;
     int samplesPerPixel_ = 1;
     ScatteredSettings scattered_;
     TemporalIntegration temporal_{0.1f};
+    int listedSamples_ = 0;      ///< that first_ and list_ are for; 0: none
     std::vector<uint32_t> first_;
+    TileList list_;              ///< samples in the order in which they are traced
     std::vector<Vec2> places_, motions_;
     std::vector<Vec3> colours_;
     Image weights_, motion_;

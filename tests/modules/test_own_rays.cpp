@@ -1,0 +1,251 @@
+// What modules promise that place their own rays, where the catalogue's suite, which makes up signals, does not reach them.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <thread>
+
+#include "base/parallel.h"
+#include "reconstruct/stable/stable.h"
+#include "support/module_harness.h"
+#include "support/transport_scene.h"
+
+namespace lumi::test {
+namespace {
+
+/// A frame of a sequence: where the camera stands, and the size of the ball (-1: there is none).
+struct Moment {
+    float shift = 0, ball = 1;
+    bool operator==(const Moment&) const = default;
+};
+
+/// A floor, a ball, a sheet that half of all rays pass, a lamp that is a sphere, and a dim sky.
+std::shared_ptr<const PosedScene> sceneOf(float ball, float lamp = 20) {
+    TinyScene tiny;
+    tiny.add(floorMesh(), lambert(Vec3(0.6f, 0.5f, 0.4f)));
+    Material gauze = lambert(0.7f);
+    gauze.alphaMode = AlphaMode::Blend, gauze.alpha = 0.5f;
+    tiny.add(boxMesh(Vec3(0.8f, 0.8f, 0.02f)), gauze, translation(Vec3(-0.8f, 0.5f, 1)));
+    if (ball >= 0) tiny.add(sphereMesh(0.4f, 24, 12), lambert(0.6f), translation(Vec3(0.5f, 0.4f, 0)) * scaling(Vec3(ball)));
+    Light light;
+    light.type = LightType::Sphere, light.radius = 0.25f, light.radiance = Vec3(lamp);
+    tiny.addLight(light, translation(Vec3(0, 1.3f, -0.5f)));
+    tiny.scene.environment.constant = Vec3(0.1f);
+    return tiny.pose();
+}
+
+Camera view(float shift = 0) { return lookFrom(Vec3(shift, 1.2f, 3.5f), Vec3(0.6f * shift, 0.6f, 0)); }
+
+/// Runs frames of sequences.
+class Player {
+public:
+    explicit Player(Extent2 extent) : extent_(extent) {}
+
+    RunResult run(Module& module, FrameNumber frame, const std::shared_ptr<const PosedScene>& posed, const Camera& camera, const Camera& before,
+                  Changes changes, std::stop_token stop = {}) {
+        tracer_.bind(posed);
+        changes.cut |= frame == 0;
+        const CameraPose pose = poseCamera(camera, extent_);
+        FrameSampling sampling = frameOf(camera, extent_, 1, plainPaths(2), {});
+        sampling.frame = static_cast<uint32_t>(frame);
+        TapSet wanted;
+        for (const Tap& tap : module.taps()) wanted.insert(tap.name);
+        StageTimer timer;
+        return module.run({frame, signals_, *posed, pose, changes.cut ? pose : poseCamera(before, extent_), changes, wanted, tracer_, sampling, timer, std::move(stop), {}},
+                          image);
+    }
+    RunResult run(Module& module, FrameNumber frame, const Moment& now, const Moment& before, std::stop_token stop = {}) {
+        auto& posed = scenes_[now.ball];
+        if (!posed) posed = sceneOf(now.ball);
+        return run(module, frame, posed, view(now.shift), view(before.shift), {.camera = now.shift != before.shift, .objects = now.ball != before.ball},
+                   std::move(stop));
+    }
+    std::string digest(const Module& module) const { return digestOf(image, module); }
+
+    Image image;
+
+private:
+    Extent2 extent_;
+    Signals signals_;
+    Tracer tracer_;
+    std::map<float, std::shared_ptr<const PosedScene>> scenes_;
+};
+
+class OwnRays : public testing::TestWithParam<const char*> {
+protected:
+    static constexpr Extent2 kExtent{70, 45};
+    /// Moving, still, shrunk to nothing, gone, back again.
+    static std::vector<Moment> sequence() { return {{0, 1}, {0.05f, 1}, {0.12f, 1}, {0.12f, 1}, {0.12f, 0}, {0.2f, 0}, {0.2f, -1}, {0.2f, 1}, {0.25f, 1}}; }
+    static std::unique_ptr<Module> make() {
+        auto module = findModule(GetParam()).make();
+        module->resize(kExtent);
+        if (hasTemporal(*module)) setParameter([&](ParameterVisitor& v) { module->describe(v); }, "temporal", true);
+        return module;
+    }
+    static bool hasTemporal(Module& module) {
+        for (const ParameterInfo& info : listParameters([&](ParameterVisitor& v) { module.describe(v); }))
+            if (info.id == "temporal") return true;
+        return false;
+    }
+};
+
+TEST_P(OwnRays, MovingSequencesAreTheSameOnAnyNumberOfThreads) {
+    std::vector<std::string> digests;
+    for (const int threads : {1, 2, 8}) {
+        setThreadCount(threads);
+        Player player(kExtent);
+        const auto module = make();
+        std::string all;
+        Moment before;
+        for (size_t i = 0; i < sequence().size(); before = sequence()[i++]) {
+            ASSERT_EQ(player.run(*module, static_cast<FrameNumber>(i), sequence()[i], before), RunResult::Completed);
+            EXPECT_EQ(countNonFinite(player.image), 0);
+            all += player.digest(*module) + '\n';
+        }
+        digests.push_back(all);
+    }
+    setThreadCount(0);
+    EXPECT_EQ(digests[0], digests[1]);
+    EXPECT_EQ(digests[0], digests[2]);
+}
+
+TEST_P(OwnRays, ARunStoppedAnywhereChangesNothing) {
+    Player player(kExtent);
+    const auto straight = make(), stopped = make();
+    int stops = 0;
+    Moment before;
+    for (size_t i = 0; i < sequence().size(); before = sequence()[i++]) {
+        const auto frame = static_cast<FrameNumber>(i);
+        ASSERT_EQ(player.run(*straight, frame, sequence()[i], before), RunResult::Completed);
+        const std::string expected = player.digest(*straight);
+        // At any moment of the run, with another camera and without the ball.
+        for (const int microseconds : {0, 300, 1000, 2500, 6000}) {
+            std::stop_source source;
+            std::jthread stopper([&] {
+                std::this_thread::sleep_for(std::chrono::microseconds(microseconds));
+                source.request_stop();
+            });
+            if (player.run(*stopped, frame, {sequence()[i].shift + 0.3f, -1}, before, source.get_token()) == RunResult::Stopped) ++stops;
+        }
+        ASSERT_EQ(player.run(*stopped, frame, sequence()[i], before), RunResult::Completed);
+        EXPECT_EQ(player.digest(*stopped), expected) << "frame " << i;
+    }
+    EXPECT_GT(stops, 0);
+}
+
+TEST_P(OwnRays, TheSameFrameAgainForgetsTheFirst) {
+    Player player(kExtent);
+    const auto straight = make(), replaced = make();
+    Moment before;
+    for (size_t i = 0; i < sequence().size(); before = sequence()[i++]) {
+        const auto frame = static_cast<FrameNumber>(i);
+        ASSERT_EQ(player.run(*straight, frame, sequence()[i], before), RunResult::Completed);
+        const std::string expected = player.digest(*straight);
+        ASSERT_EQ(player.run(*replaced, frame, {sequence()[i].shift - 0.2f, 0.5f}, before), RunResult::Completed);
+        ASSERT_EQ(player.run(*replaced, frame, sequence()[i], before), RunResult::Completed);
+        EXPECT_EQ(player.digest(*replaced), expected) << "frame " << i;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, OwnRays, testing::Values("stable", "supersampling", "martin2002"), [](const auto& suite) { return std::string(suite.param); });
+
+int countVisible(const SampleSet& samples) {
+    int count = 0;
+    for (const uint32_t word : samples.words) count += std::popcount(subpixel::visible(word));
+    return count;
+}
+
+/// Calls what with the index of each visible sample.
+template <class What>
+void forVisible(const SampleSet& samples, What what) {
+    for (size_t p = 0; p < samples.words.size(); ++p) {
+        uint32_t i = samples.first[p];
+        for (uint32_t bits = subpixel::occupied(samples.words[p]); bits; bits &= bits - 1, ++i)
+            if (subpixel::visible(samples.words[p]) & (bits & (~bits + 1))) what(i);
+    }
+}
+
+// All of a lamp's body is one primitive: what the camera passes on the way round must not stay visible from behind, black.
+TEST(StablePromises, NoSampleOfALampIsBlack) {
+    const Extent2 extent{64, 48};
+    Player player(extent);
+    StableModule module;
+    module.resize(extent);
+    const auto posed = sceneOf(1);
+    const auto orbit = [](float turn) { return lookFrom(Vec3(1.5f * std::sin(turn), 1.3f, 1.5f * std::cos(turn) - 0.5f), Vec3(0, 1.3f, -0.5f)); };
+    for (FrameNumber frame = 0; frame < 30; ++frame) {
+        const float turn = 0.08f * static_cast<float>(frame);
+        ASSERT_EQ(player.run(module, frame, posed, orbit(turn), orbit(turn - 0.08f), {.camera = true}), RunResult::Completed);
+        int onLamp = 0;
+        forVisible(module.samples(), [&](uint32_t i) {
+            if (module.samples().locations[i].isSky() || module.samples().locations[i].instance != 3) return;
+            ++onLamp;
+            EXPECT_GT(module.samples().lights[i].direct.x, 10) << "frame " << frame;
+        });
+        EXPECT_GT(onLamp, 20);
+    }
+}
+
+// Each sample draws once whether a sheet stops its rays: while nothing moves, verifying again finds the same.
+TEST(StablePromises, BlendedSurfacesKeepTheirDraws) {
+    const Extent2 extent{64, 48};
+    Player player(extent);
+    StableModule module;
+    module.resize(extent);
+    const auto posed = sceneOf(1);
+    std::vector<uint32_t> words;
+    int onSheet = 0;
+    for (FrameNumber frame = 0; frame < 16; ++frame) {
+        ASSERT_EQ(player.run(module, frame, posed, view(), view(), {.camera = true}), RunResult::Completed);
+        if (frame == 10) words = module.samples().words;
+    }
+    int changed = 0;
+    for (size_t p = 0; p < words.size(); ++p) changed += words[p] != module.samples().words[p];
+    EXPECT_LT(changed, 10);
+    forVisible(module.samples(), [&](uint32_t i) { onSheet += module.samples().locations[i].instance == 1; });
+    EXPECT_GT(onSheet, 30);
+}
+
+// The view of scenes/text-plane.json comes nearer by 1% a frame and more.
+TEST(StablePromises, DensityStaysWhileTheCameraComesNearer) {
+    const Extent2 extent{96, 64};
+    for (const float step : {0.01f, 0.03f}) {
+        for (const float density : {1.0f, 2.0f}) {
+            Player player(extent);
+            StableModule module;
+            module.resize(extent);
+            setParameter([&](ParameterVisitor& v) { module.describe(v); }, "density", density);
+            const auto posed = sceneOf(1);
+            const auto nearer = [&](FrameNumber frame) {
+                return lookFrom(Vec3(0, 1, 0) + Vec3(0, 0.6f, 3.5f) * std::pow(1 - step, static_cast<float>(frame)), Vec3(0, 0.4f, -1));
+            };
+            for (FrameNumber frame = 0; frame < 40; ++frame) {
+                ASSERT_EQ(player.run(module, frame, posed, nearer(frame), nearer(frame - 1), {.camera = true}), RunResult::Completed);
+                if (frame >= 10) {
+                    ASSERT_NEAR(countVisible(module.samples()) / (96.0 * 64 * density), 1, 0.15) << step << " frame " << frame;
+                }
+            }
+        }
+    }
+}
+
+// Where light has changed shortly before everything stands still, none of then stays in the mean.
+TEST(StablePromises, AStoppedLightLeavesNothingBehind) {
+    const Extent2 extent{48, 32};
+    Player player(extent);
+    StableModule module;
+    module.resize(extent);
+    const auto bright = sceneOf(1, 2000), dim = sceneOf(1, 0);
+    for (FrameNumber frame = 0; frame < 8; ++frame)
+        ASSERT_EQ(player.run(module, frame, frame < 7 ? bright : dim, view(), view(), {.camera = true, .lights = frame == 7}), RunResult::Completed);
+    for (FrameNumber frame = 8; frame < 12; ++frame)
+        ASSERT_EQ(player.run(module, frame, dim, view(), view(), {}), RunResult::Completed);
+    forVisible(module.samples(), [&](uint32_t i) {
+        EXPECT_LT(maxComponent(module.samples().lights[i].radiance()), 0.2f);  // the sky's 0.1 and its bounces
+        EXPECT_LE(module.samples().lights[i].indirectCount, 4);
+    });
+}
+
+}  // namespace
+}  // namespace lumi::test
