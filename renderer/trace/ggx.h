@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "math/sin_cos.h"
+#include "math/vector.h"
 
 namespace lumi {
 

@@ -117,6 +117,29 @@ void addFaces(const FieldGrid& grid, const std::vector<uint32_t>& vertexOf, Mesh
             }
 }
 
+Vec3 upward(const Vec3& gradient) {
+    const float length = glm::length(gradient);
+    return length > 0 ? gradient / length : Vec3(0, 1, 0);
+}
+
+/// In creases, Newton's steps of neighbours may cross: vertices of triangles that face against their normals go back,
+/// by halves, to where the net had them.
+void unfold(Mesh& mesh, const std::vector<Vec3>& net, const std::function<Vec3(const Vec3&)>& normalAt) {
+    bool folded = true;
+    for (int pass = 0; folded && pass < 8; ++pass) {
+        folded = false;
+        for (const UVec3& t : mesh.triangles) {
+            const Vec3 a = mesh.positions[t.x], face = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
+            if (glm::dot(face, mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z]) >= 0) continue;
+            folded = true;
+            for (const uint32_t i : {t.x, t.y, t.z}) {
+                mesh.positions[i] = 0.5f * (mesh.positions[i] + net[i]);
+                mesh.normals[i] = normalAt(mesh.positions[i]);
+            }
+        }
+    }
+}
+
 }  // namespace
 
 void SoftBody::addCone(const Vec3& a, const Vec3& b, float radiusA, float radiusB, float blend) {
@@ -162,6 +185,7 @@ Mesh surfaceOf(const std::function<float(const Vec3&)>& field, const Bounds3& bo
                     mesh.positions.push_back(point);
                 }
     addFaces(grid, vertexOf, mesh);
+    const std::vector<Vec3> net = mesh.positions;
     mesh.normals.resize(mesh.positions.size());
     parallelRanges(static_cast<int64_t>(mesh.positions.size()), 512, [&](int64_t begin, int64_t end) {
         for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
@@ -173,10 +197,10 @@ Mesh surfaceOf(const std::function<float(const Vec3&)>& field, const Bounds3& bo
                 const float length = glm::length(move), most = 0.4f * cell;
                 p -= length > most ? move * (most / length) : move;
             }
-            const float length = glm::length(gradient);
-            mesh.normals[i] = length > 0 ? gradient / length : Vec3(0, 1, 0);
+            mesh.normals[i] = upward(gradient);
         }
     });
+    unfold(mesh, net, [&](const Vec3& p) { return upward(gradientAt(field, p, 0.25f * cell)); });
     mesh.uv[0].assign(mesh.positions.size(), Vec2(0));
     return mesh;
 }
