@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/parallel.h"
 
@@ -122,21 +123,29 @@ Vec3 upward(const Vec3& gradient) {
     return length > 0 ? gradient / length : Vec3(0, 1, 0);
 }
 
-/// In creases, Newton's steps of neighbours may cross: vertices of triangles that face against their normals go back,
-/// by halves, to where the net had them.
-void unfold(Mesh& mesh, const std::vector<Vec3>& net, const std::function<Vec3(const Vec3&)>& normalAt) {
-    bool folded = true;
-    for (int pass = 0; folded && pass < 8; ++pass) {
-        folded = false;
+/// In creases a few triangles may face against their normals: the shortest edge of each is drawn together, which takes it
+/// away with its neighbour and leaves the surface closed.
+void unfold(Mesh& mesh, const std::function<Vec3(const Vec3&)>& normalAt) {
+    for (int pass = 0; pass < 8; ++pass) {
+        std::map<uint32_t, uint32_t> drawnTo;
         for (const UVec3& t : mesh.triangles) {
             const Vec3 a = mesh.positions[t.x], face = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
             if (glm::dot(face, mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z]) >= 0) continue;
-            folded = true;
-            for (const uint32_t i : {t.x, t.y, t.z}) {
-                mesh.positions[i] = 0.5f * (mesh.positions[i] + net[i]);
-                mesh.normals[i] = normalAt(mesh.positions[i]);
-            }
+            glm::length_t k = 0;
+            const auto edge = [&](glm::length_t i) { return glm::distance(mesh.positions[t[i]], mesh.positions[t[(i + 1) % 3]]); };
+            for (const glm::length_t i : {1, 2})
+                if (edge(i) < edge(k)) k = i;
+            const uint32_t kept = t[k], gone = t[(k + 1) % 3];
+            if (drawnTo.count(kept) || drawnTo.count(gone)) continue;
+            drawnTo[gone] = drawnTo[kept] = kept;
+            mesh.positions[kept] = 0.5f * (mesh.positions[kept] + mesh.positions[gone]);
+            mesh.normals[kept] = normalAt(mesh.positions[kept]);
         }
+        if (drawnTo.empty()) return;
+        for (UVec3& t : mesh.triangles)
+            for (glm::length_t i = 0; i < 3; ++i)
+                if (const auto found = drawnTo.find(t[i]); found != drawnTo.end()) t[i] = found->second;
+        std::erase_if(mesh.triangles, [](const UVec3& t) { return t.x == t.y || t.y == t.z || t.z == t.x; });
     }
 }
 
@@ -185,7 +194,6 @@ Mesh surfaceOf(const std::function<float(const Vec3&)>& field, const Bounds3& bo
                     mesh.positions.push_back(point);
                 }
     addFaces(grid, vertexOf, mesh);
-    const std::vector<Vec3> net = mesh.positions;
     mesh.normals.resize(mesh.positions.size());
     parallelRanges(static_cast<int64_t>(mesh.positions.size()), 512, [&](int64_t begin, int64_t end) {
         for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
@@ -200,7 +208,7 @@ Mesh surfaceOf(const std::function<float(const Vec3&)>& field, const Bounds3& bo
             mesh.normals[i] = upward(gradient);
         }
     });
-    unfold(mesh, net, [&](const Vec3& p) { return upward(gradientAt(field, p, 0.25f * cell)); });
+    unfold(mesh, [&](const Vec3& p) { return upward(gradientAt(field, p, 0.25f * cell)); });
     mesh.uv[0].assign(mesh.positions.size(), Vec2(0));
     return mesh;
 }
