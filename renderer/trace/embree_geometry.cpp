@@ -114,12 +114,20 @@ namespace {
 /// glTF's back-face culling. Rays that leave glass meet its faces from behind: what transmits has two sides always.
 bool isSingleSided(const Material& material) { return !material.doubleSided && material.transmission == 0; }
 
+/// Of a triangle; an index out of range shades with the first material.
+bool isSingleSided(const PosedScene& posed, uint32_t instance, uint32_t primitive) {
+    const std::vector<Material>& materials = posed.scene->materials;
+    const uint32_t index = posed.materialIndex(instance, primitive);
+    return isSingleSided(materials[index < materials.size() ? index : 0]);
+}
+
 }  // namespace
 
 void EmbreeScene::findSides(const PosedScene& posed) {
     sides_.assign(plans_.size(), Sides());
     hidesBackFaces_ = false;
-    const bool anywhere = std::any_of(posed.scene->materials.begin(), posed.scene->materials.end(), isSingleSided);
+    const std::vector<Material>& materials = posed.scene->materials;
+    const bool anywhere = std::any_of(materials.begin(), materials.end(), [](const Material& m) { return isSingleSided(m); });
     for (uint32_t i = 0; anywhere && i < plans_.size(); ++i) {
         const Plan& plan = plans_[i];
         if (plan.mode == Mode::None || plan.mode == Mode::Body || plan.mode == Mode::MovingBody) continue;
@@ -128,7 +136,7 @@ void EmbreeScene::findSides(const PosedScene& posed) {
         const std::vector<uint32_t>& ofTriangles = plan.mesh->triangleMaterial;
         const bool one = posed.scene->instances[i].material >= 0 || ofTriangles.empty();
         const size_t triangles = one ? 1 : ofTriangles.size();
-        for (uint32_t t = 0; t < triangles && !sides_[i].single; ++t) sides_[i].single = isSingleSided(posed.material(i, t));
+        for (uint32_t t = 0; t < triangles && !sides_[i].single; ++t) sides_[i].single = isSingleSided(posed, i, t);
         hidesBackFaces_ |= sides_[i].single;
     }
 }
@@ -148,7 +156,7 @@ void EmbreeScene::filterBackFaces(const RTCFilterFunctionNArguments* arguments) 
                             RTCHitN_Ng_y(hit, n, i) * RTCRayN_dir_y(ray, n, i) +
                             RTCHitN_Ng_z(hit, n, i) * RTCRayN_dir_z(ray, n, i);
         const bool back = sides.turned ? along < 0 : along > 0;
-        if (back && isSingleSided(scene.posed_->material(instance, RTCHitN_primID(hit, n, i)))) arguments->valid[i] = 0;
+        if (back && isSingleSided(*scene.posed_, instance, RTCHitN_primID(hit, n, i))) arguments->valid[i] = 0;
     }
 }
 

@@ -138,7 +138,6 @@ private:
     Choice chosenInfinite(const LightReceiver& receiver, float u, float share, float elsewhere) const;
     float infiniteImportance(const LightReceiver& receiver, uint32_t infinite) const;
     float infiniteImportance(const LightReceiver& receiver) const;
-    float treeShare(const LightReceiver& receiver, float elsewhere) const;
 
     static void placeTriangle(const Triangle& triangle, LightLanes& lights, int lane);
     static void placePoint(const Point& point, LightLanes& lights, int lane);

@@ -75,6 +75,14 @@ const Emitter kEmitters[] = {
          unlit.unlit = true;
          tiny.add(std::move(ball), unlit, translation(Vec3(0.4f, 1.5f, 0)));
      }},
+    {"UnlitMeshWithoutATexture",
+     [](TinyScene& tiny) {
+         Mesh ball = sphereMesh(0.6f, 16, 8);
+         for (const Vec3& n : ball.normals) ball.colours.emplace_back(0.5f + 0.5f * n.x, 0.3f, 0.5f - 0.5f * n.x, 1.0f);
+         Material unlit = shining(false, true);
+         unlit.unlit = true;
+         tiny.add(std::move(ball), unlit, translation(Vec3(0.4f, 1.5f, 0)));
+     }},
     {"ManyBalls",
      [](TinyScene& tiny) {
          const auto ball = std::make_shared<const Mesh>(facetedSphere(0.15f, 8));

@@ -87,6 +87,15 @@ TEST(BackFaces, FollowTheMaterialWhenItIsEdited) {
     EXPECT_FALSE(hits(tracer, fromBelow(0.1f, true)));
 }
 
+TEST(BackFaces, AMaterialThatIsNotThereIsTheFirst) {
+    Tracer tracer;
+    TinyScene tiny = floors(singleSided());
+    tiny.scene.instances[0].material = 7;
+    tracer.bind(tiny.pose());
+    EXPECT_TRUE(hits(tracer, fromAbove(0.1f, true)));
+    EXPECT_FALSE(hits(tracer, fromBelow(0.1f, true)));
+}
+
 TEST(BackFaces, OfTwoCardsBackToBackEachSideShowsItsOwn) {
     TinyScene tiny;
     tiny.add(floorMesh(1), singleSided());
