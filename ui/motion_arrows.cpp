@@ -32,11 +32,11 @@ void drawArrow(ImDrawList& list, const ImVec2& from, const ImVec2& along) {
     stroke(IM_COL32(255, 255, 255, 230), px(1.2f));
 }
 
-/// The wheel's hues, and what its rim and the arrows stand for.
+/// The wheel's hues, and what its rim and the arrows stand for; `magnified` 0: there are none, and the rim's unit is the buffer's.
 void drawWheelLegend(const DisplayInfo& info, float magnified, const ImRect& visible) {
     const WithFont font(ui().fonts.small);
-    const std::string first = fmt::format("rim {:.3g} px", info.high);
-    const std::string second = magnified == 1 ? "arrows to where it was" : fmt::format("arrows to where it was, x{:g}", magnified);
+    const std::string first = fmt::format("rim {:.3g}{}", info.high, magnified > 0 ? " px" : "");
+    const std::string second = magnified == 0 ? "" : magnified == 1 ? "arrows to where it was" : fmt::format("arrows to where it was, x{:g}", magnified);
     const float radius = px(15), width = 2 * radius + px(10) + std::max(ImGui::CalcTextSize(first.c_str()).x, ImGui::CalcTextSize(second.c_str()).x);
     if (visible.GetWidth() < width + px(60)) return;
     const ImVec2 corner(visible.Max.x - width - px(22), visible.Max.y - px(52));
@@ -62,7 +62,11 @@ void drawWheelLegend(const DisplayInfo& info, float magnified, const ImRect& vis
 void drawMotionArrows(AppState& state, int pane, const ImRect& rect, const ImRect& visible) {
     const PaneSnapshot* shown = state.pane(pane);
     const Image* image = state.bufferImage(pane);
-    if (!shown || shown->info.colourMap != "wheel" || !image || image->channels() < 2 || !(shown->info.high > 0)) return;
+    if (!shown || (shown->info.colourMap != "motion" && shown->info.colourMap != "wheel") || !image || image->channels() < 2 || !(shown->info.high > 0)) return;
+    if (shown->info.colourMap == "wheel") {
+        drawWheelLegend(shown->info, 0, visible);
+        return;
+    }
     const float zoom = state.view.zoom(), spacing = px(kSpacing);
     // The rim's motion is as long as arrows are apart: magnified or shrunk by a power of two, so that it can be read off.
     const float magnified = std::exp2(std::floor(std::log2(spacing / (shown->info.high * zoom))));

@@ -38,7 +38,7 @@ Plan planFor(std::string_view channels, const std::string& defaultMap, const Dis
     Plan plan;
     plan.map = settings.colourMap == "auto" ? defaultMap : settings.colourMap;
     if (plan.map.empty() || plan.map == "auto") plan.map = "none";
-    const bool none = plan.map == "none", wheel = plan.map == "wheel";
+    const bool none = plan.map == "none", wheel = plan.map == "wheel" || plan.map == "motion";
     const bool colour = channels.starts_with("RGB");
     const int single = count == 1 ? 0 : std::min(settings.channel, count - 1);
     if (single >= 0) {
@@ -98,8 +98,11 @@ ValueRange rangeFor(const Plan& plan, const ScalarAt& value, int64_t count, cons
     if (plan.map == "ids") return {0, 1};
     if (!settings.autoRange) return {settings.low, settings.high};
     const ValueRange found = percentileRange(count, value);
-    // Where all but nothing moves, what is left is the rounding of projections.
-    if (plan.style == Style::Wheel) return {0, found.high > kLeastMotion ? found.high : 1};
+    if (plan.style == Style::Wheel) {
+        // Where all but nothing moves, what is left is the rounding of projections.
+        const float least = plan.map == "motion" ? kLeastMotion : 0;
+        return {0, found.high > least ? found.high : 1};
+    }
     if (plan.map == "signed") {
         const float reach = std::max(std::abs(found.low), std::abs(found.high));
         return reach > 0 ? ValueRange{-reach, reach} : ValueRange{-1, 1};

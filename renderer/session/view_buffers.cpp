@@ -29,7 +29,7 @@ std::map<std::string, TapSet> shownTaps(const Document& document) {
 
 const char* defaultColourMap(Signal signal) {
     switch (signal) {
-        case Signal::Motion:
+        case Signal::Motion: return "motion";
         case Signal::DepthGradient: return "wheel";
         case Signal::Visibility:
         case Signal::Roughness: return "gray";

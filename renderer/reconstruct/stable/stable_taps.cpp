@@ -82,7 +82,7 @@ std::vector<Tap> stableTaps() {
         {.name = "verdicts", .channels = "Y", .rangeHigh = 5, .colourMap = "turbo", .help = "The worst verdict on the pixel's samples: 0 none, 1 visible, 2 new, 3 occluded, 4 moved to what occludes it, 5 missed and evicted"},
         {.name = "indirectCount", .channels = "Y", .unit = "paths", .rangeHigh = 16, .help = "Mean number of paths in the indirect light of the pixel's visible samples"},
         {.name = "lanes", .channels = "Y", .unit = "rays", .rangeHigh = 8, .help = "Lanes of the packets of visibility rays that went to the pixel, idle ones included"},
-        {.name = "sampleMotion", .channels = "XY", .unit = "px", .rangeLow = -8, .rangeHigh = 8, .colourMap = "wheel", .help = "The longest motion among the pixel's visible samples, previous minus current place"},
+        {.name = "sampleMotion", .channels = "XY", .unit = "px", .rangeLow = -8, .rangeHigh = 8, .colourMap = "motion", .help = "The longest motion among the pixel's visible samples, previous minus current place"},
         {.name = "reconstructed", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "The image before temporal integration"}};
 }
 

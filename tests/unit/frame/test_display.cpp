@@ -112,7 +112,7 @@ TEST(Display, InstructionSetsAndThreadsGiveTheSameBytes) {
     Image image = wideImage({257, 89});
     image.at(1, 5, 5) = kNan;
     const std::pair<const char*, const char*> kinds[] = {{"RGB", "none"},   {"RGB", "viridis"}, {"XYZ", "none"},
-                                                         {"XYZ", "signed"}, {"XYZ", "wheel"},   {"XYZ", "cyclic"}};
+                                                         {"XYZ", "signed"}, {"XYZ", "wheel"},   {"XYZ", "cyclic"}, {"XYZ", "motion"}};
     for (const auto& [channels, map] : kinds)
         for (int curve = 0; curve < 4; ++curve) {
             DisplaySettings settings;
@@ -249,10 +249,19 @@ TEST(Display, WheelLeavesWhatStandsBlack) {
     Image motion({8, 8}, 3);
     for (size_t i = 0; i < motion.size(); ++i) motion.data()[i] = i % 3 == 0 ? 1e-4f : -3e-5f;
     Image8 out;
-    EXPECT_EQ(convert(motion, "XYZ", "wheel", {}, out).high, 1);
+    EXPECT_EQ(convert(motion, "XYZ", "motion", {}, out).high, 1);
     EXPECT_EQ(pixel(out, 4, 4), kBlack);
     motion.at(0, 4, 4) = motion.at(0, 3, 3) = 2;
-    EXPECT_GT(convert(motion, "XYZ", "wheel", {}, out).high, 0.5f);
+    EXPECT_GT(convert(motion, "XYZ", "motion", {}, out).high, 0.5f);
+}
+
+// What is no motion has no least length: the gradients of reciprocal depth are 1e-3.
+TEST(Display, WheelFitsWhateverIsNoMotion) {
+    Image gradient({8, 8}, 2);
+    for (size_t i = 0; i < gradient.size(); ++i) gradient.data()[i] = 1e-3f;
+    Image8 out;
+    EXPECT_NEAR(convert(gradient, "XY", "wheel", {}, out).high, 1.4142e-3f, 1e-6f);
+    EXPECT_NE(pixel(out, 4, 4), kBlack);
 }
 
 TEST(Display, ChannelsAloneAreGreyOrMapped) {
