@@ -212,6 +212,32 @@ TEST(Stable, WhatVanishesOrShrinksToNothingLeavesNoSample) {
     EXPECT_GT(onBalls, 50);  // what appears in front occludes all samples of its pixels, and takes one of each
 }
 
+// Light of before an edit does not come back with what was hidden during it.
+TEST(Stable, HiddenSamplesForgetLightThatIsNoMore) {
+    const Extent2 extent{60, 40};
+    for (const Changes& edit : {Changes{.lights = true}, Changes{.materials = true}, Changes{.sampling = true}}) {
+        Rig rig(extent);
+        StableModule module;
+        module.resize(extent);
+        const auto posed = balls().pose();
+        const auto hiddenWithLight = [&] {
+            const SampleSet& samples = module.samples();
+            int count = 0;
+            for (size_t p = 0; p < samples.words.size(); ++p) {
+                uint32_t i = samples.first[p];
+                for (uint32_t bits = subpixel::occupied(samples.words[p]); bits; bits &= bits - 1, ++i)
+                    count += !(subpixel::visible(samples.words[p]) & bits & (~bits + 1)) && samples.lights[i].indirectCount > 0;
+            }
+            return count;
+        };
+        FrameNumber frame = 0;
+        for (; frame < 6; ++frame) rig.run(module, frame, posed, view(0.05f * static_cast<float>(frame)), {.camera = true});
+        EXPECT_GT(hiddenWithLight(), 5);
+        rig.run(module, frame, posed, view(0.05f * static_cast<float>(frame)), edit);
+        EXPECT_EQ(hiddenWithLight(), 0);
+    }
+}
+
 TEST(Stable, SkyHasSamplesThatTurnWithTheCamera) {
     const Extent2 extent{60, 40};
     Rig rig(extent);

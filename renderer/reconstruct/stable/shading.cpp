@@ -20,6 +20,13 @@ std::span<const uint32_t> listVisible(SampleFrame& frame, const SampleSet& set) 
     });
 }
 
+/// Samples whose light is no more begin anew, those that are hidden when they are next shaded.
+void restartLight(const GatheringState& state, const SampleFrame& frame, SampleSet& set) {
+    if (!state.restart && !state.lightsMoved) return;
+    for (size_t i = 0; i < set.size(); ++i)
+        if (state.restart || frame.hidden[i]) set.lights[i].indirectCount = set.lights[i].directCount = 0;
+}
+
 /// One stretch of the list; false if stopped.
 bool shadeRange(const FrameContext& context, std::span<const uint32_t> list, const GatheringSettings& settings,
                 const GatheringState& state, SampleFrame& frame, SampleSet& set) {
@@ -45,7 +52,6 @@ bool shadeRange(const FrameContext& context, std::span<const uint32_t> list, con
         const Vec3 indirect = split ? glm::max(radiance[k] - direct[k], Vec3(0)) : Vec3(0);
         const Vec3 averaged = indirect * diffuseShare[k];
         SampleLight& light = set.lights[list[k]];
-        if (state.restart) light.indirectCount = light.directCount = 0;
         gather(light, radiance[k] - averaged, averaged, settings.converge && state.still, settings);
         frame.colours[list[k]] = light.radiance();
     }
@@ -72,6 +78,7 @@ void GatheringSettings::describe(ParameterVisitor& v) {
 
 bool shadeSamples(const FrameContext& context, const GatheringSettings& settings, const GatheringState& state, SampleFrame& frame,
                   SampleSet& set) {
+    restartLight(state, frame, set);
     const std::span<const uint32_t> list = listVisible(frame, set);
     std::atomic<bool> whole{true};
     parallelRanges(static_cast<int64_t>(list.size()), kPaths, [&](int64_t begin, int64_t end) {

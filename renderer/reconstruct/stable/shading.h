@@ -17,6 +17,7 @@ struct GatheringSettings {
 struct GatheringState {
     bool still = false;    ///< nothing has changed
     bool restart = false;  ///< averages begin anew: they hold light that is no more
+    bool lightsMoved = false;  ///< those of hidden samples do, which cannot follow
 };
 
 /// Traces one path from each visible sample on. Light that does not depend on the view, diffuse and indirect, is an

@@ -74,6 +74,7 @@ GatheringState StableModule::lightState(const FrameContext& context, const Kept*
     const Changes& changes = context.changes;
     GatheringState state;
     state.still = next.still = !changes.any();
+    state.lightsMoved = changes.lights;
     // Without a frame before, all samples are new: nothing in them is old.
     constexpr uint64_t kEver = std::numeric_limits<uint64_t>::max() / 2;
     next.steadyFrames = !previous ? kEver : changes.objects || changes.lights ? 0 : previous->steadyFrames + 1;

@@ -33,7 +33,8 @@ namespace lumi {
 ///   direction, which tells no place.
 /// - Directions of indirect light are those of the integrator (BSDF sampling), and what came to other lobes than the
 ///   diffuse one stays out of the average, for it depends on the view: it is that of the frame. The average has warmed up as a mean until it has
-///   1/alpha paths. An edit of materials or of paths begins it anew. While nothing changes at all, light is an arithmetic
+///   1/alpha paths. An edit of materials or of paths begins it anew, and so does a moved light in samples that are
+///   hidden. While nothing changes at all, light is an arithmetic
 ///   mean and verdicts stay; that mean goes on from the average, but begins anew if a light or an object moved within the
 ///   last 4/alpha frames, so that no light of then stays in it.
 /// - Temporal integration clips as filter/taa.h does.
