@@ -125,6 +125,7 @@ LUMI_LANES void storePart(float* p, LaneMask mask, Lanes v) {
 using IntLanes = int32_t __attribute__((vector_size(sizeof(Lanes))));
 
 /// x[i] to 2^x[i], for x in [-126, 127], below that 0 or a denormal; relative error below 1e-5, which weights do not feel.
+/// NaN gives what -127 does, all but 0, so that a weight made of it drops its tap.
 /// Several at once, step by step: each step waits for the one before, and processors look only so far ahead.
 template <int Count>
 LUMI_LANES void weightExp2(Lanes (&x)[Count]) {
@@ -132,6 +133,7 @@ LUMI_LANES void weightExp2(Lanes (&x)[Count]) {
     const auto forAll = [](auto step) LUMI_LANES_LAMBDA {
         for (int i = 0; i < Count; ++i) step(i);
     };
+    forAll([&](int i) { x[i] = atLeast(x[i], lanes(-127.0f)); });
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
     // f is x - floor(x); interpolant of (2^f - 1) / f in the Chebyshev nodes of [0, 1], degree 3.
     forAll([&](int i) { f[i] = _mm512_maskz_reduce_ps(kAllLanes, x[i], _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC); });
@@ -143,7 +145,6 @@ LUMI_LANES void weightExp2(Lanes (&x)[Count]) {
 #else
     const Lanes magic = lanes(12582912.0f);  // 1.5 * 2^23: a sum's low bits become the nearest integer
     Lanes shifted[Count];
-    forAll([&](int i) { x[i] = atLeast(x[i], lanes(-127.0f)); });
     forAll([&](int i) { shifted[i] = x[i] + magic; });
     forAll([&](int i) { f[i] = x[i] - (shifted[i] - magic); });
     // The same in [-0.5, 0.5].

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "base/isa.h"
 #include "filter/atrous.h"
@@ -106,6 +107,23 @@ double windowVariance(const Planes& planes, const AtrousSettings& geometry, cons
             second += w * (centred.at(0, q.x, q.y) + m * m);
         }
     return second / weights - first * first / (weights * weights);
+}
+
+// A weight whose exponent is no number drops its tap, whatever the instruction set.
+TEST(Atrous, ANormalThatIsNoNumberHarmsNoneButItsPixel) {
+    Planes planes(3);
+    for (int c = 0; c < 3; ++c) planes.normal.at(c, 30, 20) = std::numeric_limits<float>::quiet_NaN();
+    planes.inverseDepth.at(0, 44, 11) = std::numeric_limits<float>::quiet_NaN();
+    const Isa best = detectIsa();
+    for (const Isa isa : {Isa::Baseline, Isa::V3, Isa::V4}) {
+        if (isa > best) continue;
+        setIsa(isa);
+        Illumination out[2];
+        ASSERT_TRUE(atrousLevel(planes.guide(), AtrousSettings(), 2, {&planes.light[0], &planes.light[1]}, {&out[0], &out[1]}, {}));
+        for (int component = 0; component < 2; ++component)
+            for (size_t i = 0; i < out[component].rgb.size(); ++i) ASSERT_TRUE(std::isfinite(out[component].rgb.data()[i])) << isaName(isa) << ' ' << i;
+    }
+    setIsa(best);
 }
 
 TEST(Atrous, EachLevelIsEquation1OnEveryInstructionSet) {
