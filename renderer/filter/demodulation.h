@@ -13,8 +13,8 @@ namespace lumi {
 struct DemodulatedFrame {
     Image emission;   ///< RGB; light that reaches the camera unscattered, emitters and sky
     Image albedo;     ///< RGB in [0.01, 1]
-    Image direct;     ///< RGB, demodulated
-    Image indirect;   ///< RGB, demodulated
+    Image direct;     ///< RGB, demodulated, within 1e15 of 0
+    Image indirect;   ///< RGB, demodulated, within 1e15 of 0
     Image dropped;    ///< Y, 1 where a value of the input was not finite and stands as 0
     int64_t droppedPixels = 0;
 
@@ -28,7 +28,8 @@ inline SignalSet demodulationSignals() {
     return {Signal::Emission, Signal::Albedo, Signal::SpecularAlbedo, Signal::Direct, Signal::Indirect};
 }
 
-/// Replaces NaN and infinity by 0 and counts them; what comes out is finite everywhere.
+/// Replaces NaN and infinity by 0 and counts them; what comes out is finite everywhere, and the two components are at most
+/// 1e15, whose square is a number, too.
 void demodulate(const Signals& signals, DemodulatedFrame& frame);
 
 /// out = emission + albedo * (direct + indirect); `indirect` may be null. `out` is RGB of the frame's extent.

@@ -8,6 +8,9 @@ namespace lumi::LUMI_ISA {
 namespace {
 
 constexpr float kLargest = 3.402823466e38f;
+constexpr float kBrightest = kBrightestDemodulated;
+
+inline float bounded(float v) { return v > kBrightest ? kBrightest : v < -kBrightest ? -kBrightest : v; }
 
 void divide(const DemodulationRow& row) {
     const float* __restrict diffuse = row.diffuseAlbedo;
@@ -26,8 +29,8 @@ void divide(const DemodulationRow& row) {
         const bool goodE = std::fabs(e) <= kLargest, goodD = std::fabs(d) <= kLargest, goodN = std::fabs(n) <= kLargest;
         albedo[i] = a;
         emission[i] = goodE ? e : 0.0f;
-        direct[i] = goodD ? d : 0.0f;
-        indirect[i] = goodN ? n : 0.0f;
+        direct[i] = goodD ? bounded(d) : 0.0f;
+        indirect[i] = goodN ? bounded(n) : 0.0f;
         bad[i] = (goodE & goodD & goodN) ? bad[i] : 1.0f;
     }
 }

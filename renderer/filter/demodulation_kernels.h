@@ -3,6 +3,9 @@
 
 namespace lumi {
 
+/// Demodulated light is at most this: squares of it, and sums of those, are still numbers.
+constexpr float kBrightestDemodulated = 1e15f;
+
 /// One channel of a stretch of pixels; see filter/demodulation.h.
 struct DemodulationRow {
     int count = 0;

@@ -64,6 +64,19 @@ TEST_P(Degenerate, ADroppedPixelIsCountedAndShownAndHarmsNoOther) {
     }
 }
 
+// A caustic's sample may be any number; squares of it are none any more.
+TEST_P(Degenerate, AHugeSampleLeavesNumbers) {
+    const Extent2 extent{31, 19};
+    ModuleHarness harness(extent);
+    const auto module = make(extent);
+    for (FrameNumber frame = 0; frame < 6; ++frame) {
+        Signals signals = harness.trace(frame);
+        if (frame == 2)
+            for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::Indirect}) signals[signal].at(1, 12, 7) = 1e20f;
+        EXPECT_EQ(countNonFinite(harness.image(*module, frame, signals)), 0) << "frame " << frame;
+    }
+}
+
 TEST_P(Degenerate, WithoutLightItIsBlack) {
     const Extent2 extent{23, 17};
     ModuleHarness harness(extent);
