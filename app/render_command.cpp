@@ -14,6 +14,7 @@
 #include "base/isa.h"
 #include "base/memory.h"
 #include "math/statistics.h"
+#include "session/ray_rate.h"
 
 namespace lumi {
 namespace fs = std::filesystem;
@@ -48,19 +49,13 @@ class Summary {
 public:
     void add(const FrameOutput& frame) {
         ++frames_;
-        rays_ += frame.rays.total();
+        const RayRate rate = rayRate(frame);
+        rays_ += rate.rays, traceMs_ += rate.ms;
         nonFinite_ += frame.rays.nonFinite;
-        const bool traced = frame.rays.total() > 0;
-        for (const auto& [instance, rays] : frame.runRays) {
-            nonFinite_ += rays.nonFinite;
-            if (traced) continue;  // the few that a filter traces beside the frame's
-            rays_ += rays.total();
-            traceMs_ += frame.runMs.at(instance);
-        }
+        for (const auto& [instance, rays] : frame.runRays) nonFinite_ += rays.nonFinite;
         for (const auto& [stage, ms] : frame.stagesMs) {
             if (!stages_.count(stage)) order_.push_back(stage);
             stages_[stage].push_back(ms);
-            if (stage == "trace") traceMs_ += ms;
         }
     }
     void print(const RenderOutputs& outputs, const MachineOptions& machine, MessageLog& log, double seconds) const {

@@ -137,10 +137,11 @@ void FrameEngine::adoptFreshInstances(const std::vector<std::string>& active, bo
 SignalSet FrameEngine::wantedSignals(const FrameRequest& request) {
     SignalSet wanted = request.signals | shownSignals(request.document);
     for (const std::string& name : request.activeInstances()) {
-        wanted |= running(name).module->reads();
-        if (running(name).failed) wanted.add(Signal::Noisy);
+        const SignalSet reads = running(name).module->reads();
+        wanted |= reads;
+        // What is shown when a module fails; one that places its own rays has not asked for so much before it does.
+        if (!reads.empty() || running(name).failed) wanted.add(Signal::Noisy);
     }
-    if (!wanted.empty()) wanted.add(Signal::Noisy);  // what is shown if a module fails
     return wanted;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "session/ray_rate.h"
 #include "session/session_impl.h"
 #include "session/view_buffers.h"
 
@@ -37,12 +38,6 @@ std::shared_ptr<const Image8> enlarged(const Image8& coarse, Extent2 extent) {
             std::memcpy(row + 4 * x, &coarse.rgba[4 * (from * coarseWidth + x * coarseWidth / width)], 4);
     }
     return full;
-}
-
-double raysPerSecond(const FrameOutput& frame) {
-    for (const auto& [stage, ms] : frame.stagesMs)
-        if (stage == "trace" && ms > 0) return static_cast<double>(frame.rays.total()) / ms * 1000;
-    return 0;
 }
 
 }  // namespace
@@ -92,7 +87,7 @@ void Session::Impl::publish() {
     next->stagesMs.emplace_back("display", timer.elapsedMs());
     next->frameMs = shown.frameMs + timer.elapsedMs();
     next->rays = shown.rays;
-    next->raysPerSecond = raysPerSecond(shown);
+    next->raysPerSecond = rayRate(shown).perSecond();
     next->framesPerSecond = shownRate;
     std::lock_guard lock(mutex);
     snapshot = std::move(next);
@@ -123,7 +118,7 @@ void Session::Impl::publishPreview(const FrameOutput& coarse, const Work& work) 
     next->stagesMs = coarse.stagesMs;
     next->frameMs = coarse.frameMs + timer.elapsedMs();
     next->rays = coarse.rays;
-    next->raysPerSecond = raysPerSecond(coarse);
+    next->raysPerSecond = rayRate(coarse).perSecond();
     next->framesPerSecond = measuredRate();
     std::lock_guard lock(mutex);
     if (work.sceneNumber == sceneNumber) snapshot = std::move(next);

@@ -24,6 +24,8 @@ const SignalSet kGeometry{Signal::Normal,       Signal::GeometricNormal, Signal:
 
 }  // namespace
 
+bool isGeometryOnly(SignalSet signals) { return kGeometry.contains(signals); }
+
 SignalSet withDependencies(SignalSet wanted) {
     if (wanted.hasAny(kDemodulated)) wanted |= SignalSet{Signal::Albedo, Signal::SpecularAlbedo};
     return wanted;

@@ -69,6 +69,9 @@ private:
     std::vector<std::unique_ptr<TileSums>> spare_;
 };
 
+/// Does nothing of it need more than the surfaces that the camera sees?
+bool isGeometryOnly(SignalSet signals);
+
 /// `wanted` and what it depends on: demodulated light comes with its albedos.
 SignalSet withDependencies(SignalSet wanted);
 

@@ -141,7 +141,9 @@ bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_t
     SignalsObserver frame(impl_->scene, sampling, signals);
     std::vector<PathObserver*> observers{&frame};
     observers.insert(observers.end(), extra.begin(), extra.end());
-    const Integrator integrator(impl_->scene, sampling.path, sampling.seed, observers);
+    PathSettings path = sampling.path;
+    if (extra.empty() && isGeometryOnly(signals.available())) path.maxDepth = 0;  // no light is asked for
+    const Integrator integrator(impl_->scene, path, sampling.seed, observers);
 
     const std::vector<int> tiles = mortonOrder(frame.tileColumns(), frame.tileRows());
     std::atomic<size_t> done{0};

@@ -1,5 +1,6 @@
 #include "session/frame_engine.h"
 
+#include "session/ray_rate.h"
 #include "support/expect_error.h"
 #include "support/probe_module.h"
 #include "support/tiny_scene.h"
@@ -149,6 +150,28 @@ TEST(FrameEngine, WhatIsAskedForDoesNotChangeTheImage) {
         EXPECT_TRUE(b->signals->available().contains(SignalSet::all()));
         EXPECT_TRUE(b->taps.count("accumulate-standardError"));
     }
+}
+
+// A depth that is stored beside a module which places its own rays costs no paths, and its rays are not the module's.
+TEST(FrameEngine, GeometryAloneIsTracedWithoutLight) {
+    Engine only, lit;
+    Document document(tinyScene());
+    document.setText("view.0.module", "stable");
+    const auto a = only.engine.advance({document, 0, false, {Signal::Depth, Signal::Normal}, {}});
+    const auto b = lit.engine.advance({document, 0, false, {Signal::Depth, Signal::Normal, Signal::Noisy}, {}});
+    ASSERT_TRUE(a && b);
+    for (const Signal signal : {Signal::Depth, Signal::Normal}) EXPECT_EQ((*a->signals)[signal], (*b->signals)[signal]);
+    EXPECT_FALSE(a->signals->available().has(Signal::Noisy));
+    EXPECT_GT(a->rays.cameraRays, 0u);
+    EXPECT_EQ(a->rays.bounceRays + a->rays.shadowRays, 0u);
+    EXPECT_GT(b->rays.bounceRays + b->rays.shadowRays, 0u);
+    EXPECT_EQ(*a->results.at("stable"), *b->results.at("stable"));
+    for (const auto* frame : {&*a, &*b}) EXPECT_EQ(rayRate(*frame).rays, frame->runRays.at("stable").total());
+    EXPECT_GT(rayRate(*a).perSecond(), 0);
+
+    document.setText("view.0.module", "accumulate");
+    const FrameOutput reading = only.draw(document, 1);
+    EXPECT_EQ(rayRate(reading).rays, reading.rays.total());
 }
 
 TEST(FrameEngine, BothViewsSeeTheSameSamples) {
