@@ -40,8 +40,10 @@ Interval ratioInterval(const Study& study, const std::vector<double>& a, const s
 
 /// `excess` is how far each unit lies beyond the bound on the wrong side.
 Verdict judge(const Study& study, const std::vector<double>& excess) {
+    // What is left when some units have no value may be just those that speak for the claim.
+    const bool all = std::all_of(excess.begin(), excess.end(), [](double value) { return std::isfinite(value); });
+    if (excess.empty() || !all) return Verdict::Unknown;
     const Interval interval = meanInterval(excess, study.intervals.level, intervalMethod(study));
-    if (interval.count == 0) return Verdict::Unknown;
     if (interval.mean > 0) return interval.known() && interval.low > 0 ? Verdict::Fails : Verdict::FailsWithinNoise;
     return interval.known() && interval.high <= 0 ? Verdict::Holds : Verdict::WithinNoise;
 }

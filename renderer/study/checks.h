@@ -26,7 +26,7 @@ struct StudyCheckResult {
 /// A result for each scene (or the mean over all) and each sample count that the claim's entry runs with. Holds: as claimed,
 /// and the interval of the units' differences to the bound tells so. WithinNoise: as claimed, but the interval does not tell
 /// it from the contrary. Fails: not as claimed, and the interval tells so. FailsWithinNoise: the means are not as claimed,
-/// but the interval does not tell. Unknown: there is no value, or one of those to compare with did not run at this count.
+/// but the interval does not tell. Unknown: a unit has no value, or one of those to compare with did not run at this count.
 /// A claim about times, or at equal cost, is judged seed by seed; against several entries at equal cost these are one curve,
 /// straight between its points in log-log space; more than a quarter out of its range there is no value.
 std::vector<StudyCheckResult> checkClaims(const Study& study, const StudyPlan& plan, const StudyRecords& records, const StudyTimes& times);

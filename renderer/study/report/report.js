@@ -82,7 +82,7 @@ function addNonFinite(part) {
 function addChecks() {
   const claims = [...(results.checks || []), ...(times.checks || [])];
   if (!claims.length) return;
-  const part = section("checks", "What was claimed", `Against several methods: the one that it holds worst against. "Within the noise": the intervals do not tell what the means say from its contrary. "Unknown": there is no value, or a method to compare with did not run at this sample count.`);
+  const part = section("checks", "What was claimed", `Against several methods: the one that it holds worst against. "Within the noise": the intervals do not tell what the means say from its contrary. "Unknown": a seed or scene has no value, or a method to compare with did not run at this sample count.`);
   const kinds = { "holds": "holds", "holds within the noise": "close", "fails within the noise": "close", "fails": "fails", "unknown": "fails" };
   part.add(`<table><thead><tr><th>claim</th><th class="text">scene</th>${sampleCounts.length > 1 ? "<th>spp</th>" : ""}<th>value</th><th class="text">against</th><th>ratio</th><th>bound</th><th class="text">verdict</th></tr></thead><tbody>` +
     claims.map(c => `<tr><td class="name claim">${escapeText(c.claim)}</td><td class="text">${escapeText(sceneTitle(c.scene))}</td>${sampleCounts.length > 1 ? `<td>${c.spp}</td>` : ""}<td>${interval(c.value)}</td>` +

@@ -201,6 +201,10 @@ TEST(Results, ClaimsHoldOrNotOrNobodyKnows) {
     EXPECT_EQ(claim("a", "mse", {}, 0.9)[0].verdict, Verdict::Fails);
     s.study.checks[0].onAverage = true;
     EXPECT_EQ(checkClaims(s.study, s.plan, s.records, {}).size(), 3u);
+    s.records.rows[0].corrected.clear(), s.records.rows[0].metrics["mse"] = NAN;
+    results = claim("a", "mse", {b}, 0.6);
+    EXPECT_EQ(std::count_if(results.begin(), results.end(), [](const auto& result) { return result.verdict == Verdict::Unknown; }), 1)
+        << "the seeds that are left do not speak for all";
     for (StudyRow& row : s.records.rows) row.corrected.clear(), row.metrics["mse"] = NAN;
     EXPECT_EQ(claim("a", "mse", {b}, 2)[0].verdict, Verdict::Unknown) << "no value holds nothing";
 }
