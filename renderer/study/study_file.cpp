@@ -215,6 +215,7 @@ void readBody(const JsonTree& tree, const JsonValue& merged, Study& study) {
     study.statistics = readStatistics(tree, top.find("statistics"));
     readTuning(tree, top.find("tuning"), study);
     readEntries(tree, top.need("entries"), study);
+    checkStatisticTaps(tree, top.find("statistics"), study);
     readSweep(tree, top.find("sweep"), study);
     readPairs(tree, top.find("pairs"), study);
     readAblations(tree, top.find("ablations"), study);

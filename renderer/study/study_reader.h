@@ -34,6 +34,8 @@ void readChecks(const JsonTree& tree, const JsonValue* section, Study& study);
 void readFigures(const JsonTree& tree, const JsonValue* section, Study& study);
 
 std::vector<StudyStatistic> readStatistics(const JsonTree& tree, const JsonValue* section);
+/// Refuses taps that no entry's module has; of a study whose statistics and entries are read.
+void checkStatisticTaps(const JsonTree& tree, const JsonValue* section, const Study& study);
 /// {"statistic": number}, of a study whose statistics are read.
 std::vector<std::pair<std::string, double>> readKnown(const JsonTree& tree, const JsonValue* section, const Study& study);
 

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "measure/measure.h"
+#include "reconstruct/catalog.h"
 #include "study/study_reader.h"
 #include "study/temporal_metrics.h"
 
@@ -113,6 +114,21 @@ std::vector<StudyStatistic> readStatistics(const JsonTree& tree, const JsonValue
     if (!section->isArray()) refuseValue(tree, *section, "statistics", "an array of statistics");
     for (const JsonValue& item : section->items) statistics.push_back(readStatistic(tree, item, statistics));
     return statistics;
+}
+
+void checkStatisticTaps(const JsonTree& tree, const JsonValue* section, const Study& study) {
+    std::vector<std::string> names;
+    for (const StudyEntry& entry : study.entries) {
+        const std::unique_ptr<Module> module = findModule(entry.module).make();
+        for (const Tap& tap : module->taps())
+            if (std::find(names.begin(), names.end(), tap.name) == names.end()) names.push_back(tap.name);
+    }
+    for (size_t i = 0; i < study.statistics.size(); ++i) {
+        const std::string& tap = study.statistics[i].tap;
+        if (tap.empty() || std::find(names.begin(), names.end(), tap) != names.end()) continue;
+        for (const JsonMember& member : section->items[i].members)
+            if (member.key == "tap") refuseName(tree, member.value.at, "buffer of the entries' modules", tap, names);
+    }
 }
 
 std::vector<std::pair<std::string, double>> readKnown(const JsonTree& tree, const JsonValue* section, const Study& study) {

@@ -46,6 +46,7 @@ TEST(Statistics, RefuseWhatMeansNothing) {
     };
     refused(R"({"name": "x"})", {"one of \"tap\""});
     refused(R"({"name": "x", "tap": "a", "of": "mean", "rays": "all"})", {"one of \"tap\""});
+    refused(R"({"name": "x", "tap": "sampleCuont", "of": "mean"})", {"unknown buffer of the entries' modules \"sampleCuont\""});
     refused(R"({"name": "mse", "rays": "all"})", {"\"mse\" is the name of something else"});
     refused(R"({"name": "frame_ms", "rays": "all"})", {"is the name of something else"});
     refused(R"({"name": "x", "over": "y", "under": "y"})", {"unknown over \"y\""});

@@ -45,7 +45,7 @@ TEST(StudyFile, EverythingIsRead) {
       "checks": [{"title": "C", "entry": "a", "metric": "mse", "against": ["b"], "at-most": 1.03, "on-average": true}],
       "metric-settings": {"relmse-epsilon": 0.01, "hdr-flip-exposures": [-2, 3]},
       "pairs": [{"entry": "a", "against": "none"}, {"entry": "a", "against": ["none", "b"]}],
-      "statistics": [{"name": "far", "tap": "samples", "of": {"percentile": 99}}, {"name": "rough", "metric": "relmse", "reference-spp": 64},
+      "statistics": [{"name": "far", "tap": "sampleCount", "of": {"percentile": 99}}, {"name": "rough", "metric": "relmse", "reference-spp": 64},
                      {"name": "rays", "title": "Rays", "rays": "camera"}, {"name": "each", "over": "rays", "under": "far"}],
       "ablations": [{"entry": "a", "stages": [{"name": "limit", "set": {"limit": false}}]}],
       "figures": [{"name": "f", "scene": "night", "frame": 63, "spp": 4, "input": "none", "entries": ["a"], "metric": "mse",
