@@ -74,6 +74,12 @@ TEST_P(Degenerate, AHugeSampleLeavesNumbers) {
         if (frame == 2)
             for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::Indirect}) signals[signal].at(1, 12, 7) = 1e20f;
         EXPECT_EQ(countNonFinite(harness.image(*module, frame, signals)), 0) << "frame " << frame;
+        for (const Tap& tap : module->taps()) {
+            const Image& image = module->tap(tap.name);
+            int64_t nans = 0;
+            for (size_t i = 0; i < image.size(); ++i) nans += std::isnan(image.data()[i]);
+            EXPECT_EQ(nans, 0) << tap.name << " frame " << frame;
+        }
     }
 }
 
