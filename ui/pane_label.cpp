@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "reconstruct/catalog.h"
 #include "ui/parameter_widgets.h"
 #include "ui/viewport.h"
@@ -40,9 +42,11 @@ void drawModulePopup(AppState& state, int pane) {
     if (!ImGui::BeginPopup("modules")) return;
     smallText("Module");
     const std::string now = state.module(pane);
+    float width = px(230);
+    for (const ModuleEntry& entry : moduleCatalog()) width = std::max(width, ImGui::CalcTextSize(entry.title).x);
     for (const ModuleEntry& entry : moduleCatalog()) {
         if (ImGui::Selectable(fmt::format("{}##{}", entry.title, entry.id).c_str(), now == entry.id, 0,
-                              ImVec2(px(230), 0)))
+                              ImVec2(width, 0)))
             state.setOnce(state.viewId(pane, "module"), std::string(entry.id));
         markItem(std::string("module:") + entry.id);
         if (ImGui::IsItemHovered())
