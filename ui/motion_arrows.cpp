@@ -13,12 +13,6 @@ namespace {
 constexpr float kSpacing = 18;     ///< design pixels between arrows
 constexpr float kLeastLength = 3;  ///< of an arrow that is drawn
 
-/// Hue of a direction, as the colour map `wheel` has it at its rim.
-ImU32 wheelColour(float angle) {
-    const auto lobe = [&](float at) { return 0.5f + 0.5f * std::cos(angle - at * 2 * kPi / 3); };
-    return ImGui::ColorConvertFloat4ToU32(ImVec4(lobe(0), lobe(1), lobe(2), 1));
-}
-
 void drawArrow(ImDrawList& list, const ImVec2& from, const ImVec2& along) {
     const float length = std::hypot(along.x, along.y);
     const ImVec2 unit = along / length, side(-unit.y, unit.x), tip = from + along;
@@ -50,7 +44,9 @@ void drawWheelLegend(const DisplayInfo& info, float magnified, const ImRect& vis
             return centre + ImVec2(std::cos(angle), std::sin(angle)) * radius;
         };
         const float middle = static_cast<float>(i) + 0.5f;
-        list.AddTriangleFilled(centre, at(middle - 0.55f), at(middle + 0.55f), wheelColour(middle * 2 * kPi / kSectors));
+        const Vec3 c = colourMapValue("wheel", middle / kSectors);
+        const ImU32 colour = ImGui::ColorConvertFloat4ToU32(ImVec4(c.x, c.y, c.z, 1));
+        list.AddTriangleFilled(centre, at(middle - 0.55f), at(middle + 0.55f), colour);
     }
     const float left = corner.x + 2 * radius + px(10);
     list.AddText(ImVec2(left, corner.y), palette::kText, first.c_str());
@@ -62,7 +58,7 @@ void drawWheelLegend(const DisplayInfo& info, float magnified, const ImRect& vis
 void drawMotionArrows(AppState& state, int pane, const ImRect& rect, const ImRect& visible) {
     const PaneSnapshot* shown = state.pane(pane);
     const Image* image = state.bufferImage(pane);
-    if (!shown || (shown->info.colourMap != "motion" && shown->info.colourMap != "wheel") || !image || image->channels() < 2 || !(shown->info.high > 0)) return;
+    if (!shown || !isWheel(shown->info.colourMap) || !image || image->channels() < 2 || !(shown->info.high > 0)) return;
     if (shown->info.colourMap == "wheel") {
         drawWheelLegend(shown->info, 0, visible);
         return;

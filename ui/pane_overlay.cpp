@@ -84,7 +84,7 @@ void drawPixelFrame(const AppState& state, Pixel pixel, const ImRect& rect, cons
 
 /// The colour map with its ends, at the bottom right of what is visible of the pane.
 void drawColourBar(const DisplayInfo& info, const ImRect& visible) {
-    if (!info.falseColour || info.colourMap == "ids" || info.colourMap == "wheel" || info.colourMap == "motion") return;
+    if (!info.falseColour || info.colourMap == "ids" || isWheel(info.colourMap)) return;
     const float width = std::min(px(190), visible.GetWidth() - px(40)), height = px(8);
     if (width < px(80)) return;
     const ImVec2 corner(visible.Max.x - width - px(22), visible.Max.y - px(46));

@@ -18,7 +18,7 @@ std::vector<ImRect> paneRects(const AppState& state, const ImRect& area);
 /// drawn last. `pane` is under the pointer.
 void handleViewportInput(AppState& state, const ImRect& pane);
 
-/// A grid of arrows over a buffer of motion (colour map `wheel`), from pixels to where they were a frame earlier, and the wheel.
+/// A grid of arrows over a buffer of motion (colour map `motion`), from pixels to where they were a frame earlier, and the wheel.
 void drawMotionArrows(AppState& state, int pane, const ImRect& rect, const ImRect& visible);
 /// What is written over the pane: chips, colour bar, arrows, pixel values, marks. `half` is the visible part under a wipe.
 void drawPaneOverlay(AppState& state, int pane, const ImRect& rect, const ImRect& visible);

@@ -90,7 +90,7 @@ Vec3 colourMapValue(const std::string& map, float t) {
     if (map == "turbo") return evaluate(kTurbo, t);
     if (map == "gray") return Vec3(t);
     if (map == "signed") return diverging(t);
-    if (map == "cyclic" || map == "wheel" || map == "motion") return cyclic(t);
+    if (map == "cyclic" || isWheel(map)) return cyclic(t);
     if (map == "ids") return colourOfId(static_cast<uint32_t>(t * 255));
     throwUsage({"unknown colour map", "", allNames(), '"' + map + '"'});
 }

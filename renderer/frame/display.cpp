@@ -38,7 +38,7 @@ Plan planFor(std::string_view channels, const std::string& defaultMap, const Dis
     Plan plan;
     plan.map = settings.colourMap == "auto" ? defaultMap : settings.colourMap;
     if (plan.map.empty() || plan.map == "auto") plan.map = "none";
-    const bool none = plan.map == "none", wheel = plan.map == "wheel" || plan.map == "motion";
+    const bool none = plan.map == "none", wheel = isWheel(plan.map);
     const bool colour = channels.starts_with("RGB");
     const int single = count == 1 ? 0 : std::min(settings.channel, count - 1);
     if (single >= 0) {

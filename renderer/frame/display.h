@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "image/image.h"
@@ -34,12 +35,15 @@ struct DisplayInfo {
 };
 
 /// RGBA8 of a buffer. `channels` is SignalInfo::channels ("RGB", "XYZ", "Y", ...); `defaultMap` is used for "auto".
-/// RGB with map "none" is tone-mapped; XYZ shows 0.5 + 0.5 v; XY and motion show a colour wheel with map "wheel".
+/// RGB with map "none" is tone-mapped; XYZ shows 0.5 + 0.5 v; XY and motion show a colour wheel with maps "wheel" and "motion".
 /// Vectorised, on all threads; off the UI thread.
 DisplayInfo convert(const Image& image, const char* channels, const char* defaultMap, const DisplaySettings& settings,
                     Image8& out);
 /// Ids get well-separated colours; 0 is black.
 DisplayInfo convert(const IdImage& image, const DisplaySettings& settings, Image8& out);
+
+/// Is it a map of two-dimensional values: hue for their direction, brightness for their length?
+inline bool isWheel(std::string_view map) { return map == "wheel" || map == "motion"; }
 
 /// The curve of one linear value (exposure applied before), before sRGB encoding; in [0,1]. Scalar definition.
 Vec3 toneMap(const Vec3& linear, ToneCurve curve);
