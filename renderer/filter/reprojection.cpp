@@ -117,8 +117,8 @@ ReprojectedTaps Reprojection::taps(int x, int y) const {
     ReprojectedTaps taps = one.pixel(0);
     const float px = static_cast<float>(x) + signals_[Signal::Motion].at(0, x, y), py = static_cast<float>(y) + signals_[Signal::Motion].at(1, x, y);
     if (std::fabs(px) < 1e6f && std::fabs(py) < 1e6f) {
-        taps.x0 = floorOf(wholePixel(px));
-        taps.y0 = floorOf(wholePixel(py));
+        taps.x0 = wholeBelow(wholePixel(px));
+        taps.y0 = wholeBelow(wholePixel(py));
     }
     if (taps.count > 0) return taps;
     const ReprojectedTaps wide = widen(x, y);

@@ -37,7 +37,7 @@ void findPoints(const ReprojectionRow& row, int first, int last, Points& points)
         px = wholePixel(near ? px : 0.0f);
         py = wholePixel(near ? py : 0.0f);
         points.absent[k] = (near & (object[k] != 0)) ? 0 : 1;
-        const int32_t x0 = floorOf(px), y0 = floorOf(py);
+        const int32_t x0 = wholeBelow(px), y0 = wholeBelow(py);
         points.x0[k] = x0;
         points.y0[k] = y0;
         points.fx[k] = px - static_cast<float>(x0);

@@ -97,7 +97,8 @@ void ScatteredSettings::describe(ParameterVisitor& v) {
 float scatteredWeight(const ScatteredSettings& settings, Vec2 off, const Vec3& colour) {
     if (!std::isfinite(colour.x) || !std::isfinite(colour.y) || !std::isfinite(colour.z)) return 0;
     const float tone = settings.toneMapped ? 1 / (1 + std::max(luminance(colour), 0.0f)) : 1;
-    if (settings.filter == ScatteredSettings::Filter::Box) return tone;
+    const bool inPixel = off.x >= -0.5f && off.x < 0.5f && off.y >= -0.5f && off.y < 0.5f;
+    if (settings.filter == ScatteredSettings::Filter::Box) return inPixel ? tone : 0;
     return tone * std::exp(-glm::dot(off, off) / (2 * settings.sigma * settings.sigma));
 }
 

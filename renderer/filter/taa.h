@@ -25,7 +25,8 @@ struct TaaSettings {
 };
 
 /// Along what the history is fetched: planes X and Y of `motion` in pixels (previous minus current), at that of a pixel's
-/// 3x3 where `nearness` is greatest. That is 1/depth; methods whose motion is that of samples take its length.
+/// 3x3 where `nearness` is greatest. That is 1/depth; methods whose motion is that of samples take the square of its
+/// length.
 struct TaaMotion {
     const Image& motion;
     const Image& nearness;

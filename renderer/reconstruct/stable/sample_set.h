@@ -53,7 +53,6 @@ struct SampleSet {
     std::vector<SampleLight> lights;
 
     size_t size() const { return locations.size(); }
-    bool empty() const { return words.empty(); }
     size_t bytes() const {
         return (words.size() + first.size()) * 4 + size() * (sizeof(SampleLocation) + sizeof(Vec2) + sizeof(SampleLight));
     }

@@ -132,14 +132,12 @@ void StableModule::inspect(const FrameContext& context, const SampleSet& samples
     lineage_.pixel = *at;
     float sum = 0;
     const Vec2 centre = Vec2(at->x, at->y) + 0.5f;
-    const bool box = scattered_.filter == ScatteredSettings::Filter::Box;
     for (int y = std::max(at->y - 1, 0); y <= std::min(at->y + 1, extent_.height - 1); ++y)
         for (int x = std::max(at->x - 1, 0); x <= std::min(at->x + 1, extent_.width - 1); ++x) {
             const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(extent_.width) + static_cast<size_t>(x);
             for (uint32_t i = samples.first[pixel]; i < samples.first[pixel + 1]; ++i) {
                 const Vec2 off = samples.places[i] - centre;
-                const bool outside = box && Pixel{x, y} != *at;
-                const float weight = frame_.hidden[i] || outside ? 0 : scatteredWeight(scattered_, off, frame_.colours[i]);
+                const float weight = frame_.hidden[i] ? 0 : scatteredWeight(scattered_, off, frame_.colours[i]);
                 sum += weight;
                 const char* kNames[] = {"new", "visible", "occluded", "moved to what occludes it", "missed"};
                 lineage_.rows.push_back({"reconstruction", {x, y}, weight,

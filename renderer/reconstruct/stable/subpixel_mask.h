@@ -31,9 +31,6 @@ inline int at(Vec2 within) {
     const int y = glm::clamp(static_cast<int>(within.y * kSide), 0, kSide - 1);
     return y * kSide + x;
 }
-inline Vec2 centre(int subpixel) {
-    return (Vec2(static_cast<float>(subpixel % kSide), static_cast<float>(subpixel / kSide)) + 0.5f) / static_cast<float>(kSide);
-}
 
 /// Algorithm 1: a sample lands in `subpixel` of the pixel that `word` stands for. Updates the word; true if the sample
 /// is to be stored, in place of the one there if there is one. The first unoccluded sample stays, then the first

@@ -55,7 +55,6 @@ void locate(const FrameContext& context, const Ray& ray, const Hit& hit, uint32_
     frame.motions[i] = Vec2(surfaceMotion(camera, previous, frame.inWorld[i], context.tracer.previousPosition(hit.point)));
 }
 
-
 /// One stretch of the list.
 void verifyRange(const FrameContext& context, std::span<const uint32_t> work, float epsilon, SampleFrame& frame, SampleSet& set) {
     const CameraPose camera = pinhole(context.camera);
