@@ -29,8 +29,7 @@ public:
     /// The next frame, with `signals` beside what the methods read, and buffers by instance. Throws Error(Interrupted).
     FrameOutput advance(const SignalSet& signals, const std::map<std::string, TapSet>& taps = {});
     int64_t next() const { return next_; }
-    /// Of the frame that was drawn last.
-    /// `spp` 0: the study's.
+    /// Of the frame that was drawn last; `spp` 0: the study's.
     std::shared_ptr<const StudyReferenceFrame> reference(const StudyReferences::Report& report, int spp = 0);
     float exposure() const { return metricExposure(problem_); }
     const std::vector<RunningMethod>& methods() const { return methods_; }

@@ -14,7 +14,7 @@ struct StudyMeanTime {
     Interval frameMs, poseMs, traceMs, runMs, raysPerFrame;
     std::map<std::string, Interval> stagesMs;  ///< of run()
     std::vector<double> frameMsBySeed;         ///< in the study's order; NaN where the seed did not run
-    std::vector<double> runMsBySeed, nsPerRayBySeed;  ///< the same; of a frame without posing, and of that over its rays
+    std::vector<double> runMsBySeed, nsPerRayBySeed;  ///< the same; of run(), and of trace and run() over all their rays
     Interval nsPerRay;
 
     /// By a time quantity's id (isTimeQuantity()).

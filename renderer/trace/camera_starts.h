@@ -5,9 +5,10 @@
 
 namespace lumi {
 
+constexpr int kMostInStartRow = 64;
+
 /// Camera paths of sample `sample` of the pixels from (left, top) to before (right, bottom), row by row, at most
 /// kMostInStartRow in a row: what cameraStart() gives. `starts` is overwritten.
-constexpr int kMostInStartRow = 64;
 void makeStarts(const FrameSampling& sampling, Pixel leftTop, Pixel rightBottom, uint64_t sample,
                 std::vector<PathStart>& starts);
 

@@ -1,14 +1,13 @@
 // Light samples, many lanes at a time; formulas are those of Lights::samplePoint() and EnvironmentLight::sample().
 #include "trace/light_lanes.h"
 
-#include "trace/lane_math.h"
+#include "trace/plain_lane_steps.h"
 
 namespace lumi::LUMI_ISA {
 namespace {
 
-constexpr float kBelowOne = 0x1.fffffep-1f, kInfinite = __builtin_huge_valf();
+constexpr float kInfinite = __builtin_huge_valf();
 
-LUMI_LANE Lane3 at(const PlainLanes::Column3& c, int i) { return {c.x[i], c.y[i], c.z[i]}; }
 LUMI_LANE void put(PlainLanes::Column3& c, int i, bool mine, Lane3 v) {
     const Lane3 kept = choose(mine, v, at(c, i));
     c.x[i] = kept.x, c.y[i] = kept.y, c.z[i] = kept.z;

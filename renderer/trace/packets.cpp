@@ -157,16 +157,16 @@ void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std
                    Coherence coherence) {
     assert(hits.size() >= rays.size());
     if (RayRecorder* recorder = scene.recorder()) recorder->add(false, coherence, rays);
-    EmbreeScene::Context packets = makeContext(scene, rays, true);
-    if (coherence == Coherence::Coherent) {
+    const bool together = coherence == Coherence::Coherent && scene.packetWidth() > 1, sorted = scene.strayPacketWidth() >= 8;
+    EmbreeScene::Context context = makeContext(scene, rays, together || sorted);
+    if (together) {
         const int width = scene.packetWidth();
-        if (width == 16) return intersectPackets<16>(scene.handle(), rays, hits, packets);
-        if (width == 8) return intersectPackets<8>(scene.handle(), rays, hits, packets);
-        if (width == 4) return intersectPackets<4>(scene.handle(), rays, hits, packets);
+        if (width == 16) return intersectPackets<16>(scene.handle(), rays, hits, context);
+        if (width == 8) return intersectPackets<8>(scene.handle(), rays, hits, context);
+        return intersectPackets<4>(scene.handle(), rays, hits, context);
     }
-    if (scene.strayPacketWidth() == 16) return intersectSorted<16>(scene.handle(), rays, hits, packets);
-    if (scene.strayPacketWidth() == 8) return intersectSorted<8>(scene.handle(), rays, hits, packets);
-    EmbreeScene::Context context = makeContext(scene, rays, false);
+    if (sorted && scene.strayPacketWidth() == 16) return intersectSorted<16>(scene.handle(), rays, hits, context);
+    if (sorted) return intersectSorted<8>(scene.handle(), rays, hits, context);
     for (size_t i = 0; i < rays.size(); ++i) {
         RTCRayHit query;
         query.ray = singleRay(rays[i]);

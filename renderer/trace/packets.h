@@ -29,7 +29,7 @@ struct RawHit {
 enum class Coherence { Coherent, Incoherent };
 
 /// Nearest hits of rays[0, n): coherent ones in the widest packets, others as singles, or in small scenes
-/// (strayPacketWidth()) in packets of rays towards one octant.
+/// (strayPacketWidth() of 8 and more) in packets of rays towards one octant.
 void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits,
                    Coherence coherence);
 

@@ -16,7 +16,7 @@ const std::array<Vec3, kJoints> kRest{Vec3(0, 0.34f, 0), Vec3(0, 0.56f, -0.02f),
 constexpr std::array<const char*, kJoints> kNames{"pelvis", "chest", "head", "arm-left", "forearm-left", "arm-right", "forearm-right"};
 using Influences = std::array<float, kJoints>;
 
-/// The trunk, limbs and head of a figure 1.05 high that stands on y = 0 and looks along +Z.
+/// The trunk, limbs and head of a figure 1.02 high to the crown that stands on y = 0 and looks along +Z.
 SoftBody bodyShape() {
     SoftBody body;
     body.addEllipsoid({0, 0.62f, 0}, {0.235f, 0.22f, 0.175f}, 0);
