@@ -22,11 +22,16 @@ ObserverNeeds joined(std::span<PathObserver* const> observers) {
     return all;
 }
 
+FirstHitJudge* judgeOf(std::span<PathObserver* const> observers) {
+    return observers.empty() ? nullptr : dynamic_cast<FirstHitJudge*>(observers.front());
+}
+
 }  // namespace
 
 Integrator::Integrator(const TraceScene& scene, const PathSettings& settings, uint32_t seed,
                        std::span<PathObserver* const> observers)
-    : scene_(scene), settings_(settings), seed_(seed), observers_(observers), needs_(joined(observers)) {
+    : scene_(scene), settings_(settings), seed_(seed), judge_(judgeOf(observers)),
+      observers_(judge_ ? observers.subspan(1) : observers), needs_(joined(observers_)) {
     usesLightSamples_ = !scene.lights.empty() && (settings.strategy != DirectStrategy::Bsdf || scene.lights.hasDelta());
 }
 
@@ -83,6 +88,7 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
         const bool given = depth == 0 && !firstPoints.empty();
         if (given) batch.hits.assign(count, RawHit());
         else if (depth == 0 && !firstHits.empty()) takeHits(batch, firstHits);
+        else if (depth == 0 && judge_) findJudgedHits(batch, starts, coherent, counts);
         else findHits(batch, depth, coherent, counts);
         const bool wantsVertices = depth < needs_.vertexDepths;
         if (wantsVertices) batch.vertices.assign(batch.active.size(), PathVertex()), batch.vertexOf.resize(count);

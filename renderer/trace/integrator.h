@@ -3,7 +3,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "trace/observer.h"
+#include "trace/first_hit_judge.h"
 #include "trace/path_state.h"
 #include "trace/sampler.h"
 #include "trace/settings.h"
@@ -19,6 +19,8 @@ namespace lumi {
 ///
 /// Camera and first-hit shadow rays of a batch go in packets, later ones as singles. Each path's result depends on its
 /// start alone, not on the batch. Contributions that are not finite are dropped and counted.
+///
+/// A FirstHitJudge among the observers, in the first place, decides what the first rays have found.
 class Integrator {
 public:
     Integrator(const TraceScene& scene, const PathSettings& settings, uint32_t seed,
@@ -34,6 +36,7 @@ public:
 private:
     static void takeHits(PathBatch& batch, std::span<const Hit> hits);
     void findHits(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const;
+    void findJudgedHits(PathBatch& batch, std::span<const PathStart> starts, bool coherent, TraceCounts& counts) const;
     /// Rows [begin, end) of the batch.
     struct Rows {
         uint32_t begin = 0, end = 0;
@@ -82,7 +85,8 @@ private:
     const TraceScene& scene_;
     const PathSettings settings_;
     const uint32_t seed_;
-    const std::span<PathObserver* const> observers_;
+    FirstHitJudge* const judge_;
+    const std::span<PathObserver* const> observers_;  ///< but the judge
     ObserverNeeds needs_;
     bool usesLightSamples_ = true;
 };

@@ -89,6 +89,11 @@ struct PathBatch {
     std::vector<uint32_t> slots, samples;
     std::vector<Vec3> radiance;
     std::vector<RawHit> blockers;
+
+    // For a FirstHitJudge, one a start.
+    std::vector<uint32_t> firstIds;
+    std::vector<Hit> firstHits;
+    std::vector<uint8_t> goesOn;
 };
 
 }  // namespace lumi

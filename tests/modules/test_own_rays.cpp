@@ -10,6 +10,7 @@
 #include "reconstruct/stable/stable.h"
 #include "support/module_harness.h"
 #include "support/transport_scene.h"
+#include "trace/first_hit_judge.h"
 
 namespace lumi::test {
 namespace {
@@ -149,6 +150,42 @@ TEST_P(OwnRays, TheSameFrameAgainForgetsTheFirst) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, OwnRays, testing::Values("stable", "supersampling", "martin2002"), [](const auto& suite) { return std::string(suite.param); });
+
+/// Lets every path go on from what its ray has met, but those of one slot in three.
+class LenientJudge : public FirstHitJudge {
+public:
+    void nameRays(std::span<const PathStart> starts, std::span<uint32_t> ids) const override {
+        for (size_t i = 0; i < starts.size(); ++i) ids[i] = firstRayId(starts[i].key, 0);
+    }
+    void judge(std::span<const PathStart> starts, std::span<Hit> hits, std::span<uint8_t> goesOn) override {
+        for (size_t i = 0; i < starts.size(); ++i) {
+            goesOn[i] = starts[i].slot % 3 != 0;
+            met += hits[i].valid();
+        }
+    }
+    int met = 0;
+};
+
+// A judge that changes nothing leaves paths as they are; those that it ends are black.
+TEST(FirstHitJudge, ChangesOnlyWhatItDecides) {
+    const Extent2 extent{40, 30};
+    Tracer tracer;
+    tracer.bind(sceneOf(1));
+    std::vector<PathStart> starts;
+    for (uint32_t p = 0; p < 1000; ++p) {
+        starts.push_back(cameraStart(poseCamera(view(), extent), Vec2(p % 40, p / 40) + 0.3f, Vec2(0.5f), 0));
+        starts.back().key = {p, 7, 3}, starts.back().slot = p;
+    }
+    std::vector<Vec3> plain(starts.size()), judged(starts.size());
+    ASSERT_TRUE(tracer.tracePaths(starts, plainPaths(2), 0, plain, {}));
+    const uint64_t rays = tracer.counts().cameraRays;
+    LenientJudge judge;
+    PathObserver* const observers[] = {&judge};
+    ASSERT_TRUE(tracer.tracePaths(starts, plainPaths(2), 0, judged, observers));
+    EXPECT_EQ(tracer.counts().cameraRays, 2 * rays);
+    EXPECT_GT(judge.met, 500);
+    for (uint32_t p = 0; p < 1000; ++p) EXPECT_EQ(judged[p], p % 3 != 0 ? plain[p] : Vec3(0)) << p;
+}
 
 int countVisible(const SampleSet& samples) {
     int count = 0;

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "math/hash.h"
 #include "reconstruct/stable/reproject_samples.h"
+#include "reconstruct/stable/sample_rays.h"
 #include "reconstruct/stable/verification.h"
 #include "trace/tracer.h"
 
@@ -54,14 +55,15 @@ void Martin2002Module::forget() {
 void Martin2002Module::project(const FrameContext& context, const Kept& previous) {
     nearest_.assign(static_cast<size_t>(extent_.area()), kNone);
     places_.resize(previous.locations.size());
+    const ScreenPlaces screen(context.camera);
     parallelRanges(static_cast<int64_t>(previous.locations.size()), kPixels, [&](int64_t begin, int64_t end) {
         for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
             const SampleLocation& location = previous.locations[i];
             if (!location.isSky() && !context.tracer.has(location.point())) continue;
             const Vec3 inWorld = placeInWorld(context.tracer, location);
-            if (!placeOnScreen(context.camera, location, inWorld, places_[i])) continue;
-            float depth = std::numeric_limits<float>::max();
-            if (!location.isSky()) depth = std::max(context.camera.project(inWorld).z, 0.0f);
+            float depth = 0;
+            if (!screen.find(location, inWorld, places_[i], depth)) continue;
+            if (location.isSky()) depth = std::numeric_limits<float>::max();
             const uint64_t mine = static_cast<uint64_t>(std::bit_cast<uint32_t>(depth)) << 32 | i;
             const Vec2 place = places_[i];
             const size_t p = static_cast<size_t>(place.y) * static_cast<size_t>(extent_.width) + static_cast<size_t>(place.x);
@@ -107,7 +109,7 @@ void Martin2002Module::verifyAndShade(const FrameContext& context, Kept& next, I
 }
 
 void Martin2002Module::verifyAndShade(const FrameContext& context, std::span<const uint32_t> pixels, Kept& next, Image& image) {
-    const CameraPose camera = pinhole(context.camera);
+    const SampleRays sampleRays(context.camera);
     const size_t count = pixels.size();
     std::vector<PathStart> starts(count);
     std::vector<Ray> rays(count);
@@ -116,7 +118,7 @@ void Martin2002Module::verifyAndShade(const FrameContext& context, std::span<con
     std::vector<Hit> hits(count);
     for (size_t k = 0; k < count; ++k) {
         const uint32_t p = pixels[k];
-        starts[k] = rayToSample(camera, next.locations[p], next.places[p], inWorld_[p], distances[k]);
+        distances[k] = sampleRays.aim(next.locations[p], next.places[p], inWorld_[p], starts[k]);
         rays[k] = starts[k].ray;
         ids[k] = next.names[p];
     }

@@ -18,6 +18,9 @@ DensityRow rowOf(const std::vector<uint32_t>& words, Extent2 extent, int y, floa
     return {y > 0 ? here - extent.width : nullptr, here, y + 1 < extent.height ? here + extent.width : nullptr, extent.width, density};
 }
 
+/// From which difference on eq. 1 acts.
+float leastDifference(const DensitySettings& settings) { return std::min(settings.tolerance, settings.density); }
+
 /// Drawn among the strata whose score is greatest; -1 if that is negative.
 int greatest(const int (&scores)[subpixel::kStrata], uint32_t random) {
     const int most = *std::max_element(std::begin(scores), std::end(scores));
@@ -75,7 +78,7 @@ float localDensity(const std::vector<uint32_t>& words, Extent2 extent, int x, in
 
 int sampleChange(float density, const DensitySettings& settings) {
     const float missing = settings.density - density;
-    if (std::fabs(missing) < std::min(settings.tolerance, settings.density)) return 0;
+    if (std::fabs(missing) < leastDifference(settings)) return 0;
     const int change = static_cast<int>(std::ceil(std::fabs(missing)));
     return missing > 0 ? change : -change;
 }
@@ -87,7 +90,7 @@ PixelChange changePixel(uint32_t word, int change, uint32_t random) {
         const uint32_t visible = (subpixel::visible(word) | result.added) & ~result.removed;
         int scores[subpixel::kStrata];
         for (int s = 0; s < subpixel::kStrata; ++s) {
-            const int count = std::popcount(visible & subpixel::kStratum[s]);
+            const int count = static_cast<int>(subpixel::count(visible & subpixel::kStratum[s]));
             scores[s] = change > 0 ? (count < 4 ? 4 - count : -1) : (count > 0 ? count : -1);
         }
         const int stratum = greatest(scores, random);
@@ -119,6 +122,7 @@ bool analyseSamples(const std::vector<uint32_t>& words, Extent2 extent, const De
                     std::vector<PixelChange>& changes, float* density, std::stop_token stop) {
     changes.assign(words.size(), {});
     std::atomic<bool> any{false};
+    const float acts = leastDifference(settings);
     parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
         std::vector<float> scratch(static_cast<size_t>(extent.width));
         bool here = false;
@@ -126,8 +130,8 @@ bool analyseSamples(const std::vector<uint32_t>& words, Extent2 extent, const De
             float* line = density ? density + y * extent.width : scratch.data();
             analysisKernels().densityRow(rowOf(words, extent, static_cast<int>(y), line));
             for (int x = 0; x < extent.width; ++x) {
+                if (std::fabs(settings.density - line[x]) < acts) continue;
                 const int change = sampleChange(line[x], settings);
-                if (change == 0) continue;
                 const int64_t pixel = y * extent.width + x;
                 PixelChange& decided = changes[static_cast<size_t>(pixel)];
                 decided = changePixel(words[static_cast<size_t>(pixel)], change, pixelRandom(pixel, frame));

@@ -17,13 +17,14 @@ void project(const FrameContext& context, const SampleSet& previous, Reprojected
     const CameraPose& camera = context.camera;
     const bool still = !context.changes.any();
     const auto width = static_cast<uint32_t>(camera.extent.width);
+    const ScreenPlaces screen(camera);
     const auto targetOf = [&](size_t i) -> uint32_t {
         const SampleLocation& location = previous.locations[i];
         Vec2& place = out.places[i];
         if (!location.isSky() && !context.tracer.has(location.point())) return ReprojectedSamples::kNowhere;
         out.inWorld[i] = placeInWorld(context.tracer, location);
         if (still) place = previous.places[i];
-        else if (!placeOnScreen(camera, location, out.inWorld[i], place)) return ReprojectedSamples::kNowhere;
+        else if (float depth; !screen.find(location, out.inWorld[i], place, depth)) return ReprojectedSamples::kNowhere;
         const auto x = static_cast<uint32_t>(place.x), y = static_cast<uint32_t>(place.y);
         return (y * width + x) * subpixel::kCount + static_cast<uint32_t>(subpixel::at(place - Vec2(x, y)));
     };
@@ -94,21 +95,19 @@ Vec3 placeInWorld(const Tracer& tracer, const SampleLocation& location) {
     return location.isSky() ? location.direction() : tracer.position(location.point());
 }
 
-bool placeOnScreen(const CameraPose& camera, const SampleLocation& location, const Vec3& inWorld, Vec2& place) {
-    const bool perspective = camera.projection == Projection::Perspective;
-    if (location.isSky()) {
-        if (!perspective) return false;  // all its pixels look the same way: nothing tells them apart
-        const Vec3 along = transformVector(camera.cameraFromWorld, inWorld);
-        if (!(along.z < 0)) return false;
-        const float scale = 1 / (camera.pixelSize() * -along.z);
-        place = 0.5f * Vec2(camera.extent.width, camera.extent.height) + Vec2(along.x, -along.y) * scale;
-    } else {
-        const Vec3 pixel = camera.project(inWorld);
-        if (!(pixel.z > 0)) return false;
-        place = Vec2(pixel);
-    }
-    return place.x >= 0 && place.y >= 0 && place.x < static_cast<float>(camera.extent.width) &&
-           place.y < static_cast<float>(camera.extent.height);
+ScreenPlaces::ScreenPlaces(const CameraPose& camera)
+    : view_(camera.cameraFromWorld), centre_(0.5f * Vec2(camera.extent.width, camera.extent.height)), size_(2.0f * centre_),
+      inverseSize_(1 / camera.pixelSize()), perspective_(camera.projection == Projection::Perspective) {}
+
+bool ScreenPlaces::find(const SampleLocation& location, const Vec3& inWorld, Vec2& place, float& depth) const {
+    const bool sky = location.isSky();
+    if (sky && !perspective_) return false;  // all its pixels look the same way: nothing tells them apart
+    const Vec3 seen = Vec3(view_[0]) * inWorld.x + Vec3(view_[1]) * inWorld.y + Vec3(view_[2]) * inWorld.z + Vec3(view_[3]) * (sky ? 0.0f : 1.0f);
+    depth = -seen.z;
+    if (!(depth > 0)) return false;
+    const float scale = perspective_ ? inverseSize_ / depth : inverseSize_;
+    place = Vec2(centre_.x + seen.x * scale, centre_.y - seen.y * scale);
+    return place.x >= 0 && place.y >= 0 && place.x < size_.x && place.y < size_.y;
 }
 
 bool reprojectSamples(const FrameContext& context, const SampleSet& previous, ReprojectedSamples& out) {

@@ -31,7 +31,18 @@ bool reprojectSamples(const FrameContext& context, const SampleSet& previous, Re
 /// World position of a surface sample, or the unit direction of one in the sky.
 Vec3 placeInWorld(const Tracer& tracer, const SampleLocation& location);
 
-/// Continuous pixel where `camera` sees a sample; false if it does not. Its own lens and shutter play no part.
-bool placeOnScreen(const CameraPose& camera, const SampleLocation& location, const Vec3& inWorld, Vec2& place);
+/// Where a camera sees samples. Its lens and shutter play no part.
+class ScreenPlaces {
+public:
+    explicit ScreenPlaces(const CameraPose& camera);
+    /// Continuous pixel and view depth, m (of the sky: of its unit direction); false if the sample is not on the screen.
+    bool find(const SampleLocation& location, const Vec3& inWorld, Vec2& place, float& depth) const;
+
+private:
+    Mat4 view_;
+    Vec2 centre_, size_;  ///< pixels
+    float inverseSize_;   ///< pixels a metre at depth 1
+    bool perspective_;
+};
 
 }  // namespace lumi

@@ -1,65 +1,22 @@
-#include "reconstruct/stable/sample_frame.h"
+#include "reconstruct/stable/sample_batch.h"
 
 #include <utility>
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "frame/motion.h"
 #include "math/hash.h"
 
 namespace lumi {
 namespace {
 
-constexpr int64_t kRows = 8;
 constexpr size_t kBytesASample = sizeof(SampleLocation) + sizeof(Vec2) + sizeof(SampleLight);
 
 uint32_t keptOf(const SampleFrame& frame, size_t pixel) {
     return subpixel::occupied(frame.reprojected.words[pixel]) & ~frame.changes[pixel].removed & ~frame.changes[pixel].added;
 }
 
-/// A new sample of sub-pixel `sub`, still to be traced.
-void addNew(size_t pixel, int sub, Vec2 corner, float jitter, uint32_t random, size_t i, SampleFrame& frame, SampleSet& next) {
-    const uint32_t drawn = pixelRandom(static_cast<int64_t>(pixel), random);
-    next.locations[i] = {};
-    next.places[i] = corner + newSamplePlace(sub, jitter, drawn);
-    next.lights[i] = {};
-    next.lights[i].name = hashCombine(drawn, static_cast<uint32_t>(sub));
-    frame.verdicts[i] = Verdict::New;
-    frame.motions[i] = Vec2(kNoPreviousPixel);
-}
-
-/// Sample `source` of the frame before.
-void keep(const SampleSet& previous, uint32_t source, bool wasOccluded, size_t i, SampleFrame& frame, SampleSet& next) {
-    next.locations[i] = previous.locations[source];
-    next.places[i] = frame.reprojected.places[source];
-    next.lights[i] = previous.lights[source];
-    if (next.lights[i].age < 0xFFFF) ++next.lights[i].age;
-    frame.inWorld[i] = frame.reprojected.inWorld[source];
-    frame.motions[i] = previous.places[source] - next.places[i];
-    frame.verdicts[i] = wasOccluded ? Verdict::Occluded : Verdict::Visible;
-}
-
-void gatherPixel(const SampleSet& previous, size_t pixel, const DensitySettings& settings, uint32_t random, SampleFrame& frame,
-                 SampleSet& next) {
-    const uint32_t word = frame.reprojected.words[pixel], kept = keptOf(frame, pixel), added = frame.changes[pixel].added;
-    const auto width = static_cast<size_t>(next.extent.width);
-    const Vec2 corner(pixel % width, pixel / width);
-    next.words[pixel] = kept | added | (subpixel::occluded(word) & kept) << subpixel::kCount;
-    size_t i = next.first[pixel];
-    for (uint32_t bits = kept | added; bits; bits &= bits - 1, ++i) {
-        const int sub = std::countr_zero(bits);
-        if (added & subpixel::bit(sub)) {
-            addNew(pixel, sub, corner, settings.jitter, random, i, frame, next);
-            continue;
-        }
-        const auto rank = static_cast<size_t>(subpixel::rank(subpixel::occupied(word), sub));
-        keep(previous, frame.reprojected.sources[frame.reprojected.first[pixel] + rank], subpixel::occluded(word) & subpixel::bit(sub), i,
-             frame, next);
-    }
-}
-
 /// Where the samples of each pixel begin; returns how many there are.
-uint32_t numberSamples(SampleFrame& frame, SampleSet& next) {
+uint32_t beginPixels(SampleFrame& frame, SampleSet& next) {
     const size_t pixels = frame.reprojected.words.size();
     constexpr size_t kChunk = 1 << 14;
     next.words.resize(pixels);
@@ -70,7 +27,7 @@ uint32_t numberSamples(SampleFrame& frame, SampleSet& next) {
         uint32_t sum = 0;
         for (auto pixel = static_cast<size_t>(begin); pixel < static_cast<size_t>(end); ++pixel) {
             next.first[pixel] = sum;
-            sum += static_cast<uint32_t>(std::popcount(keptOf(frame, pixel) | frame.changes[pixel].added));
+            sum += subpixel::count(keptOf(frame, pixel) | frame.changes[pixel].added);
         }
         frame.chunkSums[static_cast<size_t>(begin) / kChunk] = sum;
     });
@@ -87,23 +44,80 @@ uint32_t numberSamples(SampleFrame& frame, SampleSet& next) {
 }  // namespace
 
 size_t SampleFrame::bytes() const {
-    const size_t aSample = sizeof(Vec3) * 2 + sizeof(Vec2) + sizeof(SampleLocation) + 2;
-    return inWorld.size() * aSample + changes.size() * sizeof(PixelChange) + reprojected.bytes() + chunkSums.size() * 4 + list.bytes();
+    return colours.size() * (sizeof(Vec3) + 2) + motions.size() * sizeof(Vec2) + changes.size() * sizeof(PixelChange) + reprojected.bytes() + chunkSums.size() * 4;
 }
 
-void gatherSamples(const SampleSet& previous, const DensitySettings& settings, uint32_t random, SampleFrame& frame, SampleSet& next) {
-    const uint32_t sum = numberSamples(frame, next);
+void numberSamples(SampleFrame& frame, SampleSet& next) {
+    const uint32_t sum = beginPixels(frame, next);
     const size_t more = sum > next.locations.capacity() ? sum - next.locations.capacity() : 0;
     if (more > 0) checkMemory("the samples of stable ray tracing", more * kBytesASample);
     next.locations.resize(sum), next.places.resize(sum), next.lights.resize(sum);
-    frame.inWorld.resize(sum), frame.motions.resize(sum), frame.verdicts.resize(sum);
+    frame.motions.resize(frame.wantsMotions ? sum : 0), frame.verdicts.resize(sum);
     frame.hidden.resize(sum), frame.colours.resize(sum);
-    frame.blockers.assign(sum, {});
-    parallelRanges(next.extent.height, kRows, [&](int64_t begin, int64_t end) {
-        const auto width = static_cast<size_t>(next.extent.width);
-        for (size_t pixel = static_cast<size_t>(begin) * width; pixel < static_cast<size_t>(end) * width; ++pixel)
-            gatherPixel(previous, pixel, settings, random, frame, next);
-    });
+}
+
+SampleGatherer::SampleGatherer(const SampleSet& previous, const DensitySettings& settings, uint32_t random, SampleFrame& frame, SampleSet& next)
+    : jitter_(settings.jitter), random_(random), width_(static_cast<uint32_t>(next.extent.width)),
+      reprojectedWords_(frame.reprojected.words.data()), reprojectedFirst_(frame.reprojected.first.data()),
+      sources_(frame.reprojected.sources.data()), changes_(frame.changes.data()), oldLocations_(previous.locations.data()),
+      oldLights_(previous.lights.data()), oldPlaces_(previous.places.data()), newPlaces_(frame.reprojected.places.data()),
+      inWorld_(frame.reprojected.inWorld.data()), first_(next.first.data()), words_(next.words.data()),
+      locations_(next.locations.data()), places_(next.places.data()), lights_(next.lights.data()),
+      motions_(frame.wantsMotions ? frame.motions.data() : nullptr), verdicts_(frame.verdicts.data()), hidden_(frame.hidden.data()),
+      colours_(frame.colours.data()) {}
+
+void SampleGatherer::prefetch(uint32_t pixel) const {
+    const uint32_t count = subpixel::count(subpixel::occupied(reprojectedWords_[pixel]));
+    for (uint32_t k = 0; k < count; ++k) {
+        const uint32_t source = sources_[reprojectedFirst_[pixel] + k], i = first_[pixel] + k;
+        __builtin_prefetch(oldLights_ + source);
+        __builtin_prefetch(oldLocations_ + source);
+        __builtin_prefetch(newPlaces_ + source);
+        __builtin_prefetch(inWorld_ + source);
+        __builtin_prefetch(lights_ + i, 1);
+        __builtin_prefetch(locations_ + i, 1);
+        __builtin_prefetch(places_ + i, 1);
+        __builtin_prefetch(colours_ + i, 1);
+    }
+}
+
+void SampleGatherer::gather(uint32_t pixel, SampleBatch& batch) const {
+    const uint32_t word = reprojectedWords_[pixel], added = changes_[pixel].added;
+    const uint32_t kept = subpixel::occupied(word) & ~changes_[pixel].removed & ~added;
+    words_[pixel] = kept | added;
+    if (!(kept | added)) return;
+    uint32_t i = first_[pixel];
+    size_t slot = batch.sampleCount;
+    batch.pixels[batch.pixelCount++] = {pixel, static_cast<uint32_t>(slot)};
+    const uint32_t* sources = sources_ + reprojectedFirst_[pixel];
+    for (uint32_t bits = kept | added; bits; bits &= bits - 1, ++i, ++slot) {
+        const uint32_t bit = bits & (~bits + 1);
+        batch.samples[slot] = i;
+        hidden_[i] = 0;
+        if (added & bit) {
+            addNew(pixel, std::countr_zero(bits), i);
+            continue;
+        }
+        const uint32_t source = sources[subpixel::count(subpixel::occupied(word) & (bit - 1))];
+        locations_[i] = oldLocations_[source];
+        places_[i] = newPlaces_[source];
+        lights_[i] = oldLights_[source];
+        if (lights_[i].age < 0xFFFF) ++lights_[i].age;
+        if (motions_) motions_[i] = oldPlaces_[source] - newPlaces_[source];
+        verdicts_[i] = subpixel::occluded(word) & bit ? Verdict::Occluded : Verdict::Visible;
+        batch.inWorld[slot] = inWorld_[source];
+    }
+    batch.sampleCount = slot;
+}
+
+/// A new sample of sub-pixel `sub`, still to be traced.
+void SampleGatherer::addNew(uint32_t pixel, int sub, size_t i) const {
+    const uint32_t drawn = pixelRandom(pixel, random_);
+    locations_[i] = {};
+    places_[i] = Vec2(pixel % width_, pixel / width_) + newSamplePlace(sub, jitter_, drawn);
+    lights_[i] = {};
+    lights_[i].name = hashCombine(drawn, static_cast<uint32_t>(sub));
+    verdicts_[i] = Verdict::New;
 }
 
 }  // namespace lumi

@@ -1,10 +1,13 @@
 #pragma once
-#include "reconstruct/stable/sample_frame.h"
+#include "params/parameter.h"
+#include "reconstruct/stable/sample_set.h"
 #include "trace/observer.h"
 
 namespace lumi {
 
-/// How samples gather light [DalCorso17, sec. 6.1].
+/// How samples gather light [DalCorso17, sec. 6.1]: one path a frame each. Light that does not depend on the view, diffuse
+/// and indirect, is an exponential average over the sample's life; all else is that of this frame. While nothing changes
+/// both are arithmetic means.
 struct GatheringSettings {
     float indirectAlpha = 0.1f;  ///< weight of a new path in the average, once it has 1/alpha of them
     bool averageDirect = false;  ///< all else goes into an average, too
@@ -20,13 +23,8 @@ struct GatheringState {
     bool lightsMoved = false;  ///< those of hidden samples do, which cannot follow
 };
 
-/// Traces one path from each visible sample on. Light that does not depend on the view, diffuse and indirect, is an
-/// exponential average over the sample's life; all else is that of this frame. While nothing changes both are arithmetic
-/// means. Sets lights and colours. Returns false if stopped.
-bool shadeSamples(const FrameContext& context, const GatheringSettings& settings, const GatheringState& state, SampleFrame& frame,
-                  SampleSet& set);
-
-/// Adds the light of one more path to what a sample has gathered: `indirect` is what is averaged, `direct` all else. `still`: nothing has changed since the frame before.
+/// Adds the light of one more path to what a sample has gathered: `indirect` is what is averaged, `direct` all else.
+/// `still`: nothing has changed since the frame before.
 void gather(SampleLight& light, const Vec3& direct, const Vec3& indirect, bool still, const GatheringSettings& settings);
 
 /// Paths of one sample a slot: the light that met at most one surface, and which part of all else came to that surface's

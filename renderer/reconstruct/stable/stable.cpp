@@ -9,6 +9,12 @@
 #include "trace/tracer.h"
 
 namespace lumi {
+namespace {
+
+/// Names the frame where random numbers are drawn.
+uint32_t randomOf(const FrameContext& context) { return hashCombine(static_cast<uint32_t>(context.frame), context.sampling.seed); }
+
+}  // namespace
 
 StableModule::StableModule() : taps_(stableTaps()) {}
 
@@ -46,18 +52,12 @@ RunResult StableModule::run(const FrameContext& context, Image& out) {
     static const SampleSet kNone;
     SampleSet& samples = step.next.samples;
     const GatheringState light = lightState(context, step.previous, step.next);
-    if (!placeSamples(context, step.previous ? step.previous->samples : kNone, step.next)) return RunResult::Stopped;
-    VerificationCounts counts;
+    const SampleSet& previous = step.previous ? step.previous->samples : kNone;
+    if (!placeSamples(context, previous, step.next)) return RunResult::Stopped;
     frame_.newOnly = light.still && step.previous && step.previous->epsilon == verification_.epsilon;
     step.next.epsilon = verification_.epsilon;
-    {
-        const auto measured = context.timer.measure("verification");
-        if (!verifySamples(context, verification_, frame_, samples, counts)) return RunResult::Stopped;
-    }
-    {
-        const auto measured = context.timer.measure("shading");
-        if (!shadeSamples(context, gathering_, light, frame_, samples)) return RunResult::Stopped;
-    }
+    VerificationCounts counts;
+    if (!trace(context, previous, light, samples, counts)) return RunResult::Stopped;
     if (!reconstruct(context, samples, out)) return RunResult::Stopped;
     if (!temporal_.run(context, motion_, out)) return RunResult::Stopped;
     keepTaps(context, samples);
@@ -92,15 +92,21 @@ bool StableModule::placeSamples(const FrameContext& context, const SampleSet& pr
         if (!reprojectSamples(context, previous, frame_.reprojected)) return false;
     }
     const auto measured = context.timer.measure("analysis");
-    const uint32_t random = hashCombine(static_cast<uint32_t>(context.frame), context.sampling.seed);
     if (taps_.wants("density") && localDensity_.extent() != extent_) localDensity_.reset(extent_, 1);
-    const bool changed = analyseSamples(frame_.reprojected.words, extent_, density_, random, frame_.changes,
+    const bool changed = analyseSamples(frame_.reprojected.words, extent_, density_, randomOf(context), frame_.changes,
                                         taps_.wants("density") ? localDensity_.data() : nullptr, context.stop);
     if (context.stop.stop_requested()) return false;
     if (changed) next.meanFrames = 1;  // new samples have one path
     next.samples.extent = extent_;
-    gatherSamples(previous, density_, random, frame_, next.samples);
+    frame_.wantsMotions = temporal_.enabled() || taps_.wants("sampleMotion");
+    numberSamples(frame_, next.samples);
     return true;
+}
+
+bool StableModule::trace(const FrameContext& context, const SampleSet& previous, const GatheringState& light, SampleSet& samples,
+                         VerificationCounts& counts) {
+    const auto measured = context.timer.measure("verification/shading");
+    return traceSamples({context, previous, density_, verification_, gathering_, light, randomOf(context), frame_, samples, spare_}, counts);
 }
 
 bool StableModule::reconstruct(const FrameContext& context, const SampleSet& samples, Image& out) {
@@ -108,7 +114,7 @@ bool StableModule::reconstruct(const FrameContext& context, const SampleSet& sam
     if (reconstructScattered({extent_, samples.first, samples.places, frame_.colours, frame_.hidden}, scattered_, out, weights_, context.stop) < 0)
         return false;
     if (motion_.extent() != extent_) motion_.reset(extent_, 2);
-    if (temporal_.enabled() || taps_.wants("sampleMotion")) longestMotions(samples.first, frame_.motions, frame_.hidden, motion_);
+    if (frame_.wantsMotions) longestMotions(samples.first, frame_.motions, frame_.hidden, motion_);
     taps_.keep("reconstructed", out);
     return true;
 }
@@ -124,7 +130,7 @@ Convergence StableModule::convergence() const {
 }
 
 size_t StableModule::byteCount() const {
-    return history_.byteCount([](const Kept& kept) { return kept.samples.bytes(); }) + frame_.bytes() + weights_.bytes() + motion_.bytes() +
+    return history_.byteCount([](const Kept& kept) { return kept.samples.bytes(); }) + frame_.bytes() + spare_.bytes() + weights_.bytes() + motion_.bytes() +
            localDensity_.bytes() + temporal_.bytes() + taps_.bytes();
 }
 

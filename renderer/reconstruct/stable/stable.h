@@ -3,9 +3,8 @@
 #include "frame/history.h"
 #include "reconstruct/captured_taps.h"
 #include "reconstruct/stable/analysis.h"
-#include "reconstruct/stable/shading.h"
+#include "reconstruct/stable/sample_pass.h"
 #include "reconstruct/stable/temporal_integration.h"
-#include "reconstruct/stable/verification.h"
 
 namespace lumi {
 
@@ -20,8 +19,8 @@ namespace lumi {
 /// - Samples lie without gaps instead of 16 slots a pixel, and light is kept as floats: see SampleSet for the bytes.
 /// - Of several samples in one sub-pixel the first in memory's order stays: the paper's is that of the quickest thread.
 /// - Algorithm 1 keeps the occlusion bit of an occluded sample in an empty sub-pixel, as the text says.
-/// - Visibility is traced for all samples first, shading follows for those that are visible: both work on lists without
-///   gaps. `batches` has the paper's way.
+/// - A sample's visibility ray is the first of the path that shades it, and batches of rays are lists without gaps.
+///   `batches` has the paper's way.
 /// - Samples of the same triangle count as visible wherever the ray meets it, whatever epsilon; those on the body of a
 ///   light if they face the ray as the hit does. All rays to a sample pass the same blended surfaces or stop at them, so
 ///   that it is not occluded now and then: a still view of such converges to samples that have each drawn once.
@@ -67,6 +66,7 @@ private:
     };
     bool placeSamples(const FrameContext& context, const SampleSet& previous, Kept& next);
     GatheringState lightState(const FrameContext& context, const Kept* previous, Kept& next) const;
+    bool trace(const FrameContext& context, const SampleSet& previous, const GatheringState& light, SampleSet& samples, VerificationCounts& counts);
     bool reconstruct(const FrameContext& context, const SampleSet& samples, Image& out);
     void keepTaps(const FrameContext& context, const SampleSet& samples);
     void inspect(const FrameContext& context, const SampleSet& samples);
@@ -79,6 +79,7 @@ private:
     TemporalIntegration temporal_{0.25f};
     FrameHistory<Kept> history_;
     SampleFrame frame_;
+    SpareBatches spare_;
     Image weights_, motion_, localDensity_;
     VerificationCounts counts_;
     CapturedTaps taps_;

@@ -22,8 +22,15 @@ inline uint32_t occluded(uint32_t word) { return word >> 16; }
 /// Sub-pixels with a sample that is not occluded.
 inline uint32_t visible(uint32_t word) { return word & ~(word >> 16) & 0xFFFFu; }
 inline uint32_t bit(int subpixel) { return 1u << subpixel; }
+/// Bits set among the lower 16, without the call that std::popcount() is on machines of any age.
+inline uint32_t count(uint32_t bits) {
+    bits -= (bits >> 1) & 0x5555u;
+    bits = (bits & 0x3333u) + ((bits >> 2) & 0x3333u);
+    bits = (bits + (bits >> 4)) & 0x0F0Fu;
+    return (bits + (bits >> 8)) & 0x1Fu;
+}
 /// Number of samples in front of that of `subpixel` in a pixel whose samples lie in the order of their bits.
-inline int rank(uint32_t occupancy, int subpixel) { return std::popcount(occupancy & (bit(subpixel) - 1)); }
+inline int rank(uint32_t occupancy, int subpixel) { return static_cast<int>(count(occupancy & (bit(subpixel) - 1))); }
 
 /// The sub-pixel of a place within a pixel, both in [0, 1).
 inline int at(Vec2 within) {

@@ -1,6 +1,6 @@
 #pragma once
-#include "reconstruct/stable/sample_frame.h"
-#include "trace/tracer.h"
+#include "reconstruct/stable/sample_batch.h"
+#include "trace/first_hit_judge.h"
 
 namespace lumi {
 
@@ -18,31 +18,37 @@ struct VerificationSettings {
     void describe(ParameterVisitor& v);
 };
 
-/// What verification did.
-struct VerificationCounts {
-    uint64_t rays = 0;   ///< that were traced
-    uint64_t lanes = 0;  ///< of their packets, idle ones included
-};
-
-/// Traces a ray to each sample: new ones to whatever they meet, others up to where they should be; sets verdicts, the
-/// words' occlusion, and the locations, positions and motions of samples that are new or have moved to what occludes
-/// them. With frame.newOnly only new samples are traced, and all others keep the verdicts that they come with.
+/// Verifies the samples of a batch by what their rays meet: new ones are whatever that is, others should be there. Sets
+/// verdicts, the words' occlusion, and the locations and motions of samples that are new or have moved to what occludes
+/// them. With frame.newOnly only new samples are verified, and all others keep the verdicts that they come with.
 /// A sample that was missed keeps its bits until the next reprojection drops it; it is hidden and counts as occluded.
 /// A sample's name draws which blended surfaces its rays pass, so that the draw lasts its life.
-/// Returns false if stopped.
-bool verifySamples(const FrameContext& context, const VerificationSettings& settings, SampleFrame& frame, SampleSet& set,
-                   VerificationCounts& counts);
+/// The paths of visible samples go on from their locations.
+class SampleJudge : public FirstHitJudge {
+public:
+    /// `anyHidden`: samples that keep their verdict are hidden. As they come none is marked so, nor occluded in the words.
+    SampleJudge(const FrameContext& context, float epsilon, bool anyHidden, const SampleBatch& batch, SampleFrame& frame, SampleSet& set)
+        : context_(context), epsilon_(epsilon), anyHidden_(anyHidden), batch_(batch), frame_(frame), set_(set) {}
+    void nameRays(std::span<const PathStart> starts, std::span<uint32_t> ids) const override;
+    void judge(std::span<const PathStart> starts, std::span<Hit> hits, std::span<uint8_t> goesOn) override;
+
+private:
+    void verify(const PathStart& start, Hit& hit);
+    void locate(const Ray& ray, const Hit& hit, uint32_t sample);
+    void settle(const SampleBatch::Pixel& at, std::span<Hit> hits);
+    void replace(uint32_t sample, const Hit& blocker);
+
+    const FrameContext& context_;
+    const float epsilon_;
+    bool anyHidden_;
+    const SampleBatch& batch_;
+    SampleFrame& frame_;
+    SampleSet& set_;
+};
 
 /// Does `hit` of the ray along unit `direction` to a sample find it? `distance` is that of the sample. A hit on its
 /// triangle does, wherever the ray meets it; on any other surface it may be off by `epsilon` of the distance. The bodies of
 /// lights are convex: of the points of one that lie behind each other the ray meets that which faces it.
 bool findsSample(const Tracer& tracer, const SampleLocation& location, const Vec3& direction, const Hit& hit, float distance, float epsilon);
-
-/// The camera as samples are seen: without lens and shutter.
-CameraPose pinhole(const CameraPose& camera);
-
-/// The ray that goes to a sample whose location is known, or through the place of a new one, with its footprint;
-/// `distance` is that of the sample, infinite for new ones and the sky.
-PathStart rayToSample(const CameraPose& pinhole, const SampleLocation& location, Vec2 place, const Vec3& inWorld, float& distance);
 
 }  // namespace lumi

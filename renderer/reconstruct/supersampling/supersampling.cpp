@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "frame/motion.h"
-#include "reconstruct/stable/verification.h"
+#include "reconstruct/stable/sample_rays.h"
 #include "trace/tracer.h"
 
 namespace lumi {
@@ -98,14 +98,14 @@ bool SupersamplingModule::trace(const FrameContext& context) {
 }
 
 void SupersamplingModule::traceRun(const FrameContext& context, std::span<const uint32_t> samples, const Vec2* within) {
-    const CameraPose camera = pinhole(context.camera);
+    const SampleRays rays(context.camera);
     const auto spp = static_cast<uint32_t>(samplesPerPixel_), width = static_cast<uint32_t>(extent_.width);
     std::vector<PathStart> starts(samples.size());
     std::vector<Vec3> radiance(samples.size());
     for (size_t k = 0; k < samples.size(); ++k) {
         const uint32_t pixel = samples[k] / spp, s = samples[k] % spp;
         places_[samples[k]] = Vec2(pixel % width, pixel / width) + within[s];
-        starts[k] = cameraStart(camera, places_[samples[k]], Vec2(0.5f), 0);
+        starts[k] = rays.through(places_[samples[k]]);
         starts[k].key = {pixel % width, pixel / width, static_cast<uint32_t>(context.frame) * spp + s};
         starts[k].slot = static_cast<uint32_t>(k);
     }

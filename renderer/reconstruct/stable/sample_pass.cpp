@@ -1,0 +1,167 @@
+#include "reconstruct/stable/sample_pass.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "base/parallel.h"
+#include "reconstruct/stable/sample_rays.h"
+
+namespace lumi {
+namespace {
+
+// A block is wide, as samples lie in rows and memory is read ahead, and at density 1 has as many rays as the tracer keeps
+// together.
+constexpr int kRun = 16, kColumns = 12 * kRun, kRows = 4;
+constexpr uint32_t kStream = 0x57ab1e00u;  ///< second word of the samples' keys
+
+/// One block at a time, by one thread.
+class BlockTracer {
+public:
+    BlockTracer(const SamplePass& pass, const SampleRays& rays, const SampleGatherer& gatherer, SampleBatch& batch, VerificationCounts& counts)
+        : pass_(pass), rays_(rays), gatherer_(gatherer), batch_(batch), counts_(counts) {}
+
+    /// Pixels from `left` and `top` on; false if stopped.
+    bool run(int left, int top) {
+        const Extent2 extent = pass_.next.extent;
+        const int right = std::min(left + kColumns, extent.width), bottom = std::min(top + kRows, extent.height);
+        for (int y = top; y < bottom; ++y)
+            for (int x = left; x < right; x += kRun)
+                if (!addRun(static_cast<uint32_t>(y * extent.width + x), static_cast<uint32_t>(std::min(kRun, right - x)))) return false;
+        return trace();
+    }
+
+private:
+    bool addRun(uint32_t pixel, uint32_t count);
+    void addPacket(std::span<const uint32_t> first, uint32_t slot, uint32_t k);
+    void addStart(uint32_t slot);
+    bool trace();
+    void keepLight(bool split);
+
+    const SamplePass& pass_;
+    const SampleRays& rays_;
+    const SampleGatherer& gatherer_;
+    SampleBatch& batch_;
+    VerificationCounts& counts_;
+    bool anyHidden_ = false;  ///< of the batch's samples that keep their verdicts
+};
+
+/// A run of pixels of a row, 16 at most, of which each has 16 samples at most.
+bool BlockTracer::addRun(uint32_t pixel, uint32_t count) {
+    const uint32_t* first = pass_.next.first.data() + pixel;
+    uint32_t most = 0;
+    for (uint32_t p = 0; p < count; ++p) most = std::max(most, first[p + 1] - first[p]);
+    const bool dense = pass_.verification.batches == VerificationSettings::Batches::Dense;
+    const size_t lanes = dense ? first[count] - first[0] : most * static_cast<uint32_t>(kRun);
+    if (std::max(batch_.startCount + lanes, batch_.sampleCount + first[count] - first[0]) > SampleBatch::kMost && !trace()) return false;
+    const auto begin = static_cast<uint32_t>(batch_.sampleCount);
+    const auto ahead = std::min(pixel + 2u * kRun, static_cast<uint32_t>(pass_.next.words.size()));
+    for (uint32_t p = pixel + kRun; p < ahead; ++p) gatherer_.prefetch(p);
+    for (uint32_t p = 0; p < count; ++p) gatherer_.gather(pixel + p, batch_);
+    if (dense) {
+        const uint64_t rays = counts_.rays;
+        for (uint32_t slot = begin; slot < batch_.sampleCount; ++slot) addStart(slot);
+        counts_.lanes += counts_.rays - rays;
+        return true;
+    }
+    for (uint32_t k = 0; k < most; ++k) addPacket({first, count}, begin, k);
+    return true;
+}
+
+/// The k-th samples of a run's pixels: a packet with idle lanes where a pixel has fewer; none if all are idle.
+void BlockTracer::addPacket(std::span<const uint32_t> first, uint32_t slot, uint32_t k) {
+    const size_t before = batch_.startCount;
+    const uint64_t rays = counts_.rays;
+    bool any = false;
+    for (size_t p = 0; p < static_cast<size_t>(kRun); ++p) {
+        const size_t here = batch_.startCount;
+        if (p < first.size() && first[p] + k < first[p + 1]) addStart(slot + first[p] - first[0] + k);
+        any |= batch_.startCount > here;
+        if (batch_.startCount > here) continue;
+        PathStart& idle = batch_.starts[batch_.startCount++] = {};
+        idle.slot = SampleBatch::kIdle;
+        idle.ray.tmin = 1, idle.ray.tmax = 0;
+    }
+    if (!any) batch_.startCount = before;
+    if (counts_.rays > rays) counts_.lanes += static_cast<uint64_t>(kRun);
+}
+
+/// A path for the sample: of one that keeps its verdict only if it is visible, and without a ray then.
+void BlockTracer::addStart(uint32_t slot) {
+    const uint32_t i = batch_.samples[slot];
+    const bool verified = pass_.frame.isVerified(i);
+    if (!verified && pass_.frame.verdicts[i] != Verdict::Visible) {
+        anyHidden_ = true;
+        return;
+    }
+    batch_.startOf[slot] = static_cast<uint16_t>(batch_.startCount);
+    PathStart& start = batch_.starts[batch_.startCount++];
+    const float distance = rays_.aim(pass_.next.locations[i], pass_.next.places[i], batch_.inWorld[slot], start);
+    batch_.distances[slot] = distance;
+    start.ray.tmax = distance * (1 + pass_.verification.epsilon);
+    if (!verified) start.ray.tmin = 1, start.ray.tmax = 0;
+    start.key.x = pass_.next.lights[i].name, start.key.y = kStream, start.key.sample = pass_.next.lights[i].pathsDrawn;
+    start.slot = slot;
+    counts_.rays += verified;
+}
+
+/// All that is in the batch, which is empty then.
+bool BlockTracer::trace() {
+    const std::span starts(batch_.starts, batch_.startCount);
+    SampleJudge judge(pass_.context, pass_.verification.epsilon, anyHidden_, batch_, pass_.frame, pass_.next);
+    // At depth 1 all light is direct.
+    const PathSettings& path = pass_.context.sampling.path;
+    const bool split = path.maxDepth > 1;
+    const std::span direct(batch_.direct, batch_.sampleCount), share(batch_.diffuseShare, batch_.sampleCount);
+    if (split) std::fill(direct.begin(), direct.end(), Vec3(0)), std::fill(share.begin(), share.end(), Vec3(0));
+    SplitObserver splits(direct, share);
+    PathObserver* const observers[] = {&judge, &splits};
+    if (starts.empty()) judge.judge({}, {}, {});
+    else if (!pass_.context.tracer.tracePaths(starts, path, pass_.context.sampling.seed, {batch_.radiance, starts.size()},
+                                              std::span(observers, split ? 2 : 1), pass_.context.stop))
+        return false;
+    keepLight(split);
+    batch_.clear();
+    anyHidden_ = false;
+    return true;
+}
+
+void BlockTracer::keepLight(bool split) {
+    const GatheringState& state = pass_.light;
+    const bool still = pass_.gathering.converge && state.still;
+    for (size_t slot = 0; slot < batch_.sampleCount; ++slot) {
+        const uint32_t i = batch_.samples[slot];
+        SampleLight& light = pass_.next.lights[i];
+        const bool hidden = pass_.frame.hidden[i];
+        if (state.restart || (state.lightsMoved && hidden)) light.indirectCount = light.directCount = 0;
+        if (hidden) continue;
+        ++light.pathsDrawn;
+        const Vec3& radiance = batch_.radiance[batch_.startOf[slot]];
+        const Vec3 averaged = split ? glm::max(radiance - batch_.direct[slot], Vec3(0)) * batch_.diffuseShare[slot] : Vec3(0);
+        gather(light, radiance - averaged, averaged, still, pass_.gathering);
+        pass_.frame.colours[i] = light.radiance();
+    }
+}
+
+}  // namespace
+
+bool traceSamples(const SamplePass& pass, VerificationCounts& counts) {
+    const SampleRays rays(pass.context.camera);
+    const SampleGatherer gatherer(pass.previous, pass.density, pass.random, pass.frame, pass.next);
+    const Extent2 extent = pass.next.extent;
+    const int columns = (extent.width + kColumns - 1) / kColumns, rows = (extent.height + kRows - 1) / kRows;
+    std::atomic<bool> whole{true};
+    std::atomic<uint64_t> flown{0}, lanes{0};
+    parallelFor(static_cast<int64_t>(columns) * rows, [&](int64_t block) {
+        std::unique_ptr<SampleBatch> batch = pass.spare.take();
+        batch->clear();
+        VerificationCounts here;
+        const int left = static_cast<int>(block % columns) * kColumns, top = static_cast<int>(block / columns) * kRows;
+        if (!BlockTracer(pass, rays, gatherer, *batch, here).run(left, top)) whole = false;
+        flown += here.rays, lanes += here.lanes;
+        pass.spare.giveBack(std::move(batch));
+    }, pass.context.stop);
+    counts = {flown, lanes};
+    return whole && !pass.context.stop.stop_requested();
+}
+
+}  // namespace lumi
