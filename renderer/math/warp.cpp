@@ -18,7 +18,7 @@ Vec2 sampleDisk(Vec2 u) {
 
 Vec3 sampleCosineHemisphere(Vec2 u) {
     const Vec2 d = sampleDisk(u);
-    return {d.x, d.y, std::sqrt(std::max(0.0f, 1 - d.x * d.x - d.y * d.y))};
+    return {d.x, d.y, std::sqrt(std::abs(1 - d.x * d.x - d.y * d.y))};  // below zero by rounding only
 }
 
 Vec3 sampleSphere(Vec2 u) {

@@ -59,7 +59,8 @@ LUMI_LANE Lane3 cosineHemisphere(float u, float v) {
     const float part = 0.125f * (other / (radius == 0 ? 1.0f : radius));
     const SinCos angle = sinCosTurns(wide ? part : 0.25f - part);
     const float x = radius * angle.cosine, y = radius * angle.sine;
-    return {x, y, std::sqrt(most(0.0f, 1 - x * x - y * y))};
+    // Below zero by rounding only.
+    return {x, y, std::sqrt(std::fabs(1 - x * x - y * y))};
 }
 
 /// A start for rays that leave a surface to the side of `normal`, as offsetOrigin() [Waechter & Binder 2019].

@@ -23,16 +23,14 @@ void prepare(PlainLanes& lanes, const AlbedoView&, const PlainSettings&) {
     }
 }
 
-/// f cos of a direction at the cosine `z` to the shading normal, and its density.
+/// f cos of a direction at the cosine `z` >= 0 to the shading normal, and its density.
 struct Diffuse {
     Lane3 scattered;
     float pdf;
 };
 
 LUMI_LANE Diffuse towards(const PlainLanes& lanes, int i, float z) {
-    const float pd = lanes.diffuseProbability[i];
-    const bool above = z > 0;
-    return {at(lanes.diffuseScale, i) * (above && pd > 0 ? z : 0.0f), above ? pd * (z * kLaneInvPi) : 0.0f};
+    return {at(lanes.diffuseScale, i) * z, lanes.diffuseProbability[i] * (z * kLaneInvPi)};
 }
 
 void light(PlainLanes& lanes, const AlbedoView&, const PlainSettings& settings) {
@@ -41,7 +39,7 @@ void light(PlainLanes& lanes, const AlbedoView&, const PlainSettings& settings) 
 #pragma GCC ivdep
     for (int i = 0; i < count; ++i) {
         const float z = dot(at(lanes.lightDirection, i), at(lanes.normal, i));
-        const Diffuse f = towards(lanes, i, z);
+        const Diffuse f = towards(lanes, i, z > 0 ? z : 0.0f);
         putLight(lanes, i, f.scattered, {0, 0, 0}, f.pdf, z > 0, mis);
     }
 }
