@@ -98,9 +98,14 @@ bool EmbreeScene::bind(const PosedScene& posed) {
         const bool updated = top_ && update(posed, plans);
         if (!updated) rebuild(posed, std::move(plans));
         findSides(posed);
+        RTCBounds bounds;
+        rtcGetSceneBounds(top_, &bounds);
+        bounds_.lower = {bounds.lower_x, bounds.lower_y, bounds.lower_z};
+        bounds_.upper = {bounds.upper_x, bounds.upper_y, bounds.upper_z};
         return !updated;
     } catch (...) {
         clear();
+        bounds_ = {};
         top_ = newScene();
         rtcCommitScene(top_);
         throw;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "math/vector.h"
 #include "scene/posed_scene.h"
 
 namespace lumi {
@@ -53,6 +54,8 @@ public:
     /// In what packets rays that go anywhere are fastest: the widest in small scenes, whose few nodes most rays meet alike,
     /// else 1.
     int strayPacketWidth() const { return strayPacketWidth_; }
+    /// World space; of all that is bound, over the open shutter.
+    const Bounds3& bounds() const { return bounds_; }
     size_t byteCount() const;
 
     /// Every ray traced from now on goes to `recorder` too; null: to none.
@@ -85,6 +88,7 @@ private:
     RTCDevice device_ = nullptr;
     RTCScene top_ = nullptr;
     int packetWidth_ = 1, strayPacketWidth_ = 1;
+    Bounds3 bounds_;
     const PosedScene* posed_ = nullptr;
     /// Of each instance: has it a surface whose back the camera does not see, and does Embree see its faces turned round?
     struct Sides {

@@ -43,13 +43,18 @@ EmbreeScene::Context makeContext(const EmbreeScene& scene, std::span<const Batch
 
 unsigned flagsOf(const BatchRay& ray) { return ray.fromCamera ? EmbreeScene::kFromCamera : 0; }
 
-template <int N, class PacketRay>
-void fill(PacketRay& packet, int* valid, std::span<const BatchRay> rays) {
-    const int count = static_cast<int>(rays.size());
-    for (int i = 0; i < N; ++i) {
+/// Rays in their order.
+struct AsTheyCome {
+    size_t operator[](size_t i) const { return i; }
+};
+
+/// The rays order[first, first + count) of `rays`, at most N.
+template <int N, class PacketRay, class Order>
+void fill(PacketRay& packet, int* valid, std::span<const BatchRay> rays, Order order, size_t first, size_t count) {
+    for (size_t i = 0; i < N; ++i) {
         valid[i] = i < count ? -1 : 0;
         // Lanes that are off hold a copy, so that no lane has undefined values.
-        const BatchRay& r = rays[static_cast<size_t>(std::min(i, count - 1))];
+        const BatchRay& r = rays[order[first + std::min(i, count - 1)]];
         packet.org_x[i] = r.origin.x, packet.org_y[i] = r.origin.y, packet.org_z[i] = r.origin.z;
         packet.dir_x[i] = r.direction.x, packet.dir_y[i] = r.direction.y, packet.dir_z[i] = r.direction.z;
         packet.tnear[i] = r.tmin, packet.tfar[i] = r.tmax;
@@ -72,18 +77,18 @@ uint32_t instanceOf(uint32_t geometry, uint32_t placed) {
     return placed != RTC_INVALID_GEOMETRY_ID ? placed : geometry;
 }
 
-template <int N>
+template <int N, class Order = AsTheyCome>
 void intersectPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<RawHit> hits,
-                      RTCIntersectContext& context) {
+                      RTCIntersectContext& context, Order order = {}) {
     alignas(64) typename Packet<N>::RayHit packet;
     alignas(64) int valid[N];
     for (size_t first = 0; first < rays.size(); first += N) {
         const size_t count = std::min<size_t>(N, rays.size() - first);
-        fill<N>(packet.ray, valid, rays.subspan(first, count));
+        fill<N>(packet.ray, valid, rays, order, first, count);
         for (int i = 0; i < N; ++i) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
         Packet<N>::intersect(valid, scene, &context, &packet);
         for (size_t i = 0; i < count; ++i) {
-            RawHit& hit = hits[first + i];
+            RawHit& hit = hits[order[first + i]];
             const bool some = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
             hit.distance = some ? packet.ray.tfar[i] : kInfinity;
             hit.instance = some ? instanceOf(packet.hit.geomID[i], packet.hit.instID[0][i]) : kNoInstance;
@@ -93,49 +98,72 @@ void intersectPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<
     }
 }
 
-template <int N>
+template <int N, class Order = AsTheyCome>
 void occludedPackets(RTCScene scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked,
-                     RTCIntersectContext& context) {
+                     RTCIntersectContext& context, Order order = {}) {
     alignas(64) typename Packet<N>::Ray packet;
     alignas(64) int valid[N];
     for (size_t first = 0; first < rays.size(); first += N) {
         const size_t count = std::min<size_t>(N, rays.size() - first);
-        fill<N>(packet, valid, rays.subspan(first, count));
+        fill<N>(packet, valid, rays, order, first, count);
         Packet<N>::occluded(valid, scene, &context, &packet);
         // Embree marks a blocked ray by tfar = -inf.
-        for (size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0 ? 1 : 0;
+        for (size_t i = 0; i < count; ++i) blocked[order[first + i]] = packet.tfar[i] < 0 ? 1 : 0;
     }
 }
 
 /// Rays that are sorted or walk together: as many as a batch has.
 constexpr size_t kAtOnce = 1024;
 
-/// Places of rays such that those towards one octant are neighbours, else in their order.
-void sortByOctant(std::span<const BatchRay> rays, uint16_t* order) {
-    constexpr int kOctants = 8;
-    uint32_t next[kOctants + 1] = {};
-    const auto octant = [](const BatchRay& r) {
-        return (std::signbit(r.direction.x) ? 4 : 0) + (std::signbit(r.direction.y) ? 2 : 0) +
-               (std::signbit(r.direction.z) ? 1 : 0);
-    };
-    for (const BatchRay& r : rays) ++next[octant(r) + 1];
-    for (int i = 1; i < kOctants; ++i) next[i] += next[i - 1];
-    for (size_t i = 0; i < rays.size(); ++i) order[next[octant(rays[i])]++] = static_cast<uint16_t>(i);
+/// Of `side` cells, the one of `x` in [0, side]; the first for what is not a number.
+int cellAt(float x, int side) {
+    const float least = x > 0 ? x : 0.0f, most = static_cast<float>(side - 1);
+    return static_cast<int>(least < most ? least : most);
 }
 
-/// Rays that start here and there and go anywhere, in a scene whose few nodes most of them meet: together by octant.
+int octantOf(const Vec3& d) {
+    return (std::signbit(d.x) ? 4 : 0) + (std::signbit(d.y) ? 2 : 0) + (std::signbit(d.z) ? 1 : 0);
+}
+
+/// Places of rays such that those that start in one cell of a grid over `bounds`, and with `Octants` go towards one octant too,
+/// are neighbours, else in their order. `Side` cells along each axis.
+template <int Side, bool Octants>
+void sortRays(std::span<const BatchRay> rays, const Bounds3& bounds, uint16_t* order) {
+    constexpr int kCells = Side * Side * Side, kKeys = kCells * (Octants ? 8 : 1);
+    const Vec3 lower = bounds.lower, scale = static_cast<float>(Side) / glm::max(bounds.upper - lower, Vec3(1e-30f));
+    uint16_t keys[kAtOnce];
+    uint16_t next[kKeys + 1] = {};
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const Vec3 at = (rays[i].origin - lower) * scale;
+        const int cell = (cellAt(at.x, Side) * Side + cellAt(at.y, Side)) * Side + cellAt(at.z, Side);
+        keys[i] = static_cast<uint16_t>(cell + (Octants ? kCells * octantOf(rays[i].direction) : 0));
+        ++next[keys[i] + 1];
+    }
+    for (int i = 1; i < kKeys; ++i) next[i] = static_cast<uint16_t>(next[i] + next[i - 1]);
+    for (size_t i = 0; i < rays.size(); ++i) order[next[keys[i]]++] = static_cast<uint16_t>(i);
+}
+
+/// Rays that start here and there and go anywhere, in a scene whose few nodes most of them meet: with their like.
 template <int N>
-void intersectSorted(RTCScene scene, std::span<const BatchRay> rays, std::span<RawHit> hits,
+void intersectSorted(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits,
                      RTCIntersectContext& context) {
     uint16_t order[kAtOnce];
-    BatchRay sorted[kAtOnce];
-    RawHit found[kAtOnce];
     for (size_t first = 0; first < rays.size(); first += kAtOnce) {
         const size_t count = std::min(kAtOnce, rays.size() - first);
-        sortByOctant(rays.subspan(first, count), order);
-        for (size_t i = 0; i < count; ++i) sorted[i] = rays[first + order[i]];
-        intersectPackets<N>(scene, {sorted, count}, {found, count}, context);
-        for (size_t i = 0; i < count; ++i) hits[first + order[i]] = found[i];
+        sortRays<2, true>(rays.subspan(first, count), scene.bounds(), order);
+        intersectPackets<N>(scene.handle(), rays.subspan(first, count), hits.subspan(first, count), context, order);
+    }
+}
+
+/// Shadow rays likewise: most go to the same few lights, so where they start says enough.
+template <int N>
+void occludedSorted(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked,
+                    RTCIntersectContext& context) {
+    uint16_t order[kAtOnce];
+    for (size_t first = 0; first < rays.size(); first += kAtOnce) {
+        const size_t count = std::min(kAtOnce, rays.size() - first);
+        sortRays<4, false>(rays.subspan(first, count), scene.bounds(), order);
+        occludedPackets<N>(scene.handle(), rays.subspan(first, count), blocked.subspan(first, count), context, order);
     }
 }
 
@@ -165,8 +193,8 @@ void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std
         if (width == 8) return intersectPackets<8>(scene.handle(), rays, hits, context);
         return intersectPackets<4>(scene.handle(), rays, hits, context);
     }
-    if (sorted && scene.strayPacketWidth() == 16) return intersectSorted<16>(scene.handle(), rays, hits, context);
-    if (sorted) return intersectSorted<8>(scene.handle(), rays, hits, context);
+    if (sorted && scene.strayPacketWidth() == 16) return intersectSorted<16>(scene, rays, hits, context);
+    if (sorted) return intersectSorted<8>(scene, rays, hits, context);
     for (size_t i = 0; i < rays.size(); ++i) {
         RTCRayHit query;
         query.ray = singleRay(rays[i]);
@@ -185,6 +213,9 @@ void occludedRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std:
     if (RayRecorder* recorder = scene.recorder()) recorder->add(true, coherence, rays);
     EmbreeScene::Context context = makeContext(scene, rays, false);
     const int width = scene.strayPacketWidth();
+    const bool sorted = coherence == Coherence::Incoherent;
+    if (width == 16 && sorted) return occludedSorted<16>(scene, rays, blocked, context);
+    if (width == 8 && sorted) return occludedSorted<8>(scene, rays, blocked, context);
     if (width == 16) return occludedPackets<16>(scene.handle(), rays, blocked, context);
     if (width == 8) return occludedPackets<8>(scene.handle(), rays, blocked, context);
     if (width == 4) return occludedPackets<4>(scene.handle(), rays, blocked, context);
