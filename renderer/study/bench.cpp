@@ -32,6 +32,7 @@ public:
         : options_(options), log_(log), output_(std::move(output)), filters_(log, options.stop) {
         for (const char* scene : kScenes)
             if (benchSceneFile(scene)) addScene(scene);
+        add("trace/emitters", [this](const std::string& name) { emitters(name); });
         for (const std::string& id : benchedMetrics())
             add("metric/" + id, [this, id](const std::string& name) { benchMetric(id, name, options_.stop, output_); });
         for (const std::string& id : benchedModules())
@@ -111,6 +112,13 @@ private:
         report(name, "frame/s", 1, times);
     }
 
+    void emitters(const std::string& name) const {
+        BenchScene many(emitterScene(true, log_, options_.stop), kBenchExtent);
+        BenchScene few(emitterScene(false, log_, options_.stop), kBenchExtent);
+        report(name, "frame/s", 1,
+               timeInTurn([&] { many.render(0, options_.stop); }, [&] { few.render(0, options_.stop); }, options_.stop));
+    }
+
     PairedTimes frameAndBare(BenchScene& scene, const RecordedRays& record) const {
         return timeInTurn([&] { scene.render(0, options_.stop); },
                           [&] { replayBare(scene.tracer().embree(), record); }, options_.stop);
@@ -174,6 +182,7 @@ std::vector<BenchEntry> benchEntries() {
         {"trace/shadow/", "shadow rays, Mray/s; the limit is one call of Embree a ray"},
         {"trace/path/", "full path tracing, Mray/s over all rays; the limit is Embree over the same rays"},
         {"trace/frame/", "frames a second at 640x360, one sample a pixel, one bounce; the limit is its bare rays"},
+        {"trace/emitters", "frames a second at 640x360 under 100,352 triangles that shine; the limit is ten of them"},
         {"trace/embree-pathtracer/", "Mray/s; the limit is Embree's own path tracer"},
         {"load/", "seconds to read the scene"},
         {"build/", "seconds to make the scene ready for rays"},

@@ -2,8 +2,10 @@
 
 #include <cstdlib>
 
+#include "base/files.h"
 #include "scene/load.h"
 #include "session/document.h"
+#include "study/bench_program.h"
 #include "study/bench_timing.h"
 
 namespace lumi {
@@ -23,6 +25,30 @@ std::shared_ptr<const Scene> loadBenchScene(const fs::path& file, MessageLog& lo
     LoadOptions options;
     options.stop = std::move(stop);
     return loadScene(file, log, options);
+}
+
+std::shared_ptr<const Scene> emitterScene(bool many, MessageLog& log, std::stop_token stop) {
+    static constexpr const char* kScene = R"({"version": 1,
+        "assets": {"floor": {"rectangle": {"size": [12, 12]}}, "box": {"box": {"size": [1, 1, 1]}},
+                   "canopy": {"plane-grid": {"size": [8, 8], "columns": 224, "rows": 224}},
+                   "strip": {"plane-grid": {"size": [4, 1], "columns": 5, "rows": 1}}},
+        "materials": {"grey": {"base-color": [0.6, 0.6, 0.6]},
+                      "glow": {"base-color": [0.5, 0.5, 0.5], "emission": [1, 0.9, 0.8]},
+                      "glare": {"base-color": [0.5, 0.5, 0.5], "emission": [16, 14, 12]}},
+        "instances": [{"name": "floor", "asset": "floor", "material": "grey"},
+                      {"name": "left", "asset": "box", "material": "grey", "translate": [-1.5, 0.5, 0.5]},
+                      {"name": "right", "asset": "box", "material": "grey", "translate": [1, 0.5, 0]},
+                      {"name": "canopy", "asset": "canopy", "material": "CANOPY", "translate": [0, 4, 0]},
+                      {"name": "strip", "asset": "strip", "material": "STRIP", "translate": [0, 3.5, 0]}],
+        "environment": {"constant": [0, 0, 0]},
+        "cameras": {"main": {"eye": [0, 2, 6], "look-at": [0, 0.8, 0], "fov-y-deg": 55}}})";
+    std::string text = kScene;
+    text.replace(text.find("CANOPY"), 6, many ? "glow" : "grey");
+    text.replace(text.find("STRIP"), 5, many ? "grey" : "glare");
+    const ScratchFolder folder;
+    const fs::path file = folder.path() / "emitters.json";
+    writeFileAtomically(file, text);
+    return loadBenchScene(file, log, std::move(stop));
 }
 
 BenchScene::BenchScene(std::shared_ptr<const Scene> scene, Extent2 extent) : scene_(std::move(scene)) {
