@@ -43,6 +43,7 @@ void Integrator::collectPlain(PathBatch& batch, uint32_t row, const InstanceReco
     fillLane(lanes, i, row, path);
     lanes.width[i] = path.cone.width;
     batch.taps[i].material = &material;
+    if (material.emits) scene_.lights.prefetchTriangle(batch.hits[row].instance, batch.hits[row].primitive);
     collectTriangle(instance, material, batch.hits[row], lanes, i);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -56,10 +57,11 @@ public:
         for (uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
     }
 
-    /// Appends the subtree over `range` to `nodes`, its root first.
-    void build(const Range& range, std::vector<LightTreeNode>& nodes) {
+    /// Appends the subtree over `range` to `nodes`, its root first, which is `depth` below that of the tree.
+    void build(const Range& range, std::vector<LightTreeNode>& nodes, uint32_t depth = 0) {
         std::array<Range, kWidth> children;
-        const int count = divide(range, children);
+        // Cuts by cost may be as uneven as they like until the levels that are left just suffice for even ones.
+        const int count = divide(range, children, depth + levelsOf(range.size()) >= LightTreeWay::kMost);
         const auto self = nodes.size();
         nodes.emplace_back(emptyNode());
         const bool together = range.size() > kAlone;
@@ -67,7 +69,7 @@ public:
         if (together)
             parallelFor(count, [&](int64_t i) {
                 const auto c = static_cast<size_t>(i);
-                if (children[c].size() > 1) build(children[c], subtrees[c]);
+                if (children[c].size() > 1) build(children[c], subtrees[c], depth + 1);
             });
         for (int c = 0; c < count; ++c) {
             const Range& child = children[static_cast<size_t>(c)];
@@ -81,7 +83,7 @@ public:
             if (together)
                 append(nodes, subtrees[static_cast<size_t>(c)], first);
             else
-                build(child, nodes);
+                build(child, nodes, depth + 1);
         }
     }
 
@@ -94,9 +96,15 @@ public:
     }
 
 private:
+    /// Levels of a tree of even cuts.
+    static uint32_t levelsOf(uint32_t size) {
+        uint32_t levels = 1;
+        for (uint64_t held = kWidth; held < size; held *= kWidth) ++levels;
+        return levels;
+    }
     static LightTreeNode emptyNode() {
         LightTreeNode node{};
-        for (int c = 0; c < kWidth; ++c) node.axisZ[c] = 1, node.child[c] = LightTreeNode::kLight;
+        for (int c = 0; c < kWidth; ++c) node.axisZ[c] = 1, node.child[c] = LightTreeNode::kLight, node.far2[c] = kInfinity;
         return node;
     }
     static void setColumn(LightTreeNode& node, int c, const LightBounds& b) {
@@ -124,8 +132,8 @@ private:
         return bounds;
     }
 
-    /// Cuts `range` into up to eight, always the costliest first. Returns how many.
-    int divide(const Range& range, std::array<Range, kWidth>& parts) {
+    /// Cuts `range` into up to eight, always the costliest first, or if `even` the largest, and into halves. Returns how many.
+    int divide(const Range& range, std::array<Range, kWidth>& parts, bool even) {
         parts[0] = range;
         int count = 1;
         while (count < kWidth) {
@@ -133,11 +141,11 @@ private:
             float cost = -1;
             for (int i = 0; i < count; ++i) {
                 const Range& part = parts[static_cast<size_t>(i)];
-                const float own = part.size() > 1 ? costOf(part.bounds) : -1;
+                const float own = part.size() <= 1 ? -1 : even ? static_cast<float>(part.size()) : costOf(part.bounds);
                 if (own > cost) worst = i, cost = own;
             }
             if (worst < 0) break;
-            parts[static_cast<size_t>(count)] = split(parts[static_cast<size_t>(worst)]);
+            parts[static_cast<size_t>(count)] = split(parts[static_cast<size_t>(worst)], even);
             ++count;
         }
         return count;
@@ -149,12 +157,12 @@ private:
         LightBounds left, right;
     };
 
-    /// Shortens `range` to the left part of its best cut and returns the right part.
-    Range split(Range& range) {
+    /// Shortens `range` to the left part of its best cut, or its first half, and returns the right part.
+    Range split(Range& range, bool even) {
         Bounds3 centres;
         for (uint32_t i = range.begin; i < range.end; ++i) centres.extend(lights_[order_[i]].box.centre());
         Cut best;
-        for (int axis = 0; axis < 3; ++axis)
+        for (int axis = 0; axis < 3 && !even; ++axis)
             if (centres.upper[axis] > centres.lower[axis]) tryAxis(range, centres, axis, best);
         const auto begin = order_.begin() + range.begin, end = order_.begin() + range.end;
         auto middle = begin;
@@ -163,7 +171,7 @@ private:
                 return binOf(lights_[light].box.centre()[best.axis], centres, best.axis) < best.bin;
             });
         if (middle == begin || middle == end) {
-            // All in one place.
+            // In halves: asked for, or all are in one place.
             middle = begin + range.size() / 2;
             const auto at = static_cast<uint32_t>(middle - order_.begin());
             best.left = boundsOf(range.begin, at), best.right = boundsOf(at, range.end);
@@ -280,49 +288,68 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
 void LightTree::build(std::span<const LightBounds> bounds) {
     kernels_ = &lightTreeKernels();
     const uint64_t digest = digestOf(bounds);
-    if (digest == digest_ && places_.size() == bounds.size()) return;
+    if (digest == digest_ && ways_.size() == bounds.size()) return;
     digest_ = digest;
-    nodes_.clear(), parents_.clear(), places_.clear();
+    nodes_.clear(), ways_.clear();
     if (bounds.empty()) return;
     const std::vector<LightBounds> lights = sane(bounds);
     Builder builder(lights);
     builder.build(builder.whole(), nodes_);
     nodes_.shrink_to_fit();
-    order_ = builder.takeOrder();
-    placeLights(lights);
+    rankLights(lights, builder.takeOrder());
+    findWays();
+    findGroups();
 }
 
-void LightTree::placeLights(std::span<const LightBounds> lights) {
-    const auto count = static_cast<uint32_t>(lights.size());
-    ranks_.resize(count);
-    intensityBefore_.assign(count + 1, 0);
-    for (uint32_t rank = 0; rank < count; ++rank) {
-        ranks_[order_[rank]] = rank;
-        intensityBefore_[rank + 1] = intensityBefore_[rank] + double(lights[order_[rank]].intensity);
+void LightTree::rankLights(std::span<const LightBounds> lights, std::span<const uint32_t> order) {
+    ways_.assign(lights.size(), {});
+    ranks_.assign(lights.size() + 1, {});
+    for (uint32_t rank = 0; rank < order.size(); ++rank) {
+        ranks_[rank].light = order[rank];
+        ways_[order[rank]].rank = rank;
+        ranks_[rank + 1].before = ranks_[rank].before + double(lights[order[rank]].intensity);
     }
-    parents_.assign(nodes_.size(), ~0u);
-    places_.assign(count, ~0u);
-    groups_.assign(nodes_.size() * kWidth, {});
-    // Children stand after their parents: backwards, every node knows its own range.
-    std::vector<LightTreeGroup> ranges(nodes_.size(), {count, 0});
-    for (auto n = static_cast<uint32_t>(nodes_.size()); n-- > 0;)
+}
+
+void LightTree::findWays() {
+    std::vector<LightTreeWay> waysTo(nodes_.size());
+    // Children stand after their parents.
+    for (uint32_t n = 0; n < nodes_.size(); ++n)
         for (uint32_t c = 0; c < kWidth; ++c) {
             const LightTreeNode& node = nodes_[n];
-            const uint32_t child = node.child[c], place = n * kWidth + c;
+            LightTreeWay way = waysTo[n];
+            assert(way.length < LightTreeWay::kMost);
+            way.columns |= uint64_t(c) << (LightTreeWay::kBits * way.length++);
+            const uint32_t light = node.child[c] & ~LightTreeNode::kLight;
+            if (light == node.child[c])
+                waysTo[node.child[c]] = way;
+            else if (node.intensity[c] > 0)
+                way.rank = ways_[light].rank, ways_[light] = way;
+        }
+}
+
+void LightTree::findGroups() {
+    const auto count = static_cast<uint32_t>(ways_.size());
+    groups_.assign(nodes_.size() * kWidth, {});
+    // Children stand after their parents: backwards, every node knows its own range.
+    std::vector<LightTreeGroup> ranges(nodes_.size(), {.begin = count});
+    for (auto n = static_cast<uint32_t>(nodes_.size()); n-- > 0;)
+        for (uint32_t c = 0; c < kWidth; ++c) {
+            LightTreeNode& node = nodes_[n];
+            const uint32_t child = node.child[c];
             LightTreeGroup group;
             if (child & LightTreeNode::kLight) {
                 if (!(node.intensity[c] > 0)) continue;
-                const uint32_t light = child & ~LightTreeNode::kLight;
-                places_[light] = place;
-                group.begin = ranks_[light], group.end = group.begin + 1;
+                group.begin = ways_[child & ~LightTreeNode::kLight].rank, group.end = group.begin + 1;
             } else {
-                parents_[child] = place;
                 group = ranges[child];
                 const bool alike = node.cosSpread[c] >= kGroupSpread && node.cosReach[c] <= 0;
                 if (alike && group.end > group.begin && group.end - group.begin <= kMostInGroup)
-                    group.far2 = kFarRadii * kFarRadii * node.radius[c] * node.radius[c];
+                    node.far2[c] = kFarRadii * kFarRadii * node.radius[c] * node.radius[c];
             }
-            groups_[place] = group;
+            group.before = ranks_[group.begin].before;
+            group.intensity = ranks_[group.end].before - group.before;
+            groups_[n * kWidth + c] = group;
             ranges[n].begin = std::min(ranges[n].begin, group.begin);
             ranges[n].end = std::max(ranges[n].end, group.end);
         }
@@ -330,8 +357,7 @@ void LightTree::placeLights(std::span<const LightBounds> lights) {
 
 size_t LightTree::byteCount() const {
     return nodes_.capacity() * sizeof(LightTreeNode) + groups_.capacity() * sizeof(LightTreeGroup) +
-           intensityBefore_.capacity() * sizeof(double) +
-           (parents_.capacity() + places_.capacity() + order_.capacity() + ranks_.capacity()) * sizeof(uint32_t);
+           ways_.capacity() * sizeof(LightTreeWay) + ranks_.capacity() * sizeof(LightTreeRank);
 }
 
 }  // namespace lumi

@@ -44,9 +44,10 @@ public:
     }
     /// The probability with which pick() draws `light`.
     float probability(const LightTreePoint& point, float elsewhere, uint32_t light) const {
-        const uint32_t place = places_[light];
-        return place == ~0u ? 0 : kernels_->probability(view(), point, elsewhere, place, ranks_[light]);
+        return kernels_->probability(view(), point, elsewhere, ways_[light]);
     }
+    /// Asks for what probability() of `light` reads first.
+    void prefetch(uint32_t light) const { __builtin_prefetch(&ways_[light]); }
     /// The probability with which pick() draws any light of the tree.
     float share(const LightTreePoint& point, float elsewhere) const {
         return kernels_->share(view(), point, elsewhere);
@@ -55,17 +56,17 @@ public:
 
 private:
     LightTreeView view() const {
-        return {nodes_.data(), parents_.data(), groups_.data(), order_.data(), intensityBefore_.data()};
+        return {nodes_.data(), groups_.data(), ranks_.data()};
     }
-    void placeLights(std::span<const LightBounds> lights);
+    void rankLights(std::span<const LightBounds> lights, std::span<const uint32_t> order);
+    void findWays();
+    void findGroups();
 
     const LightTreeKernels* kernels_ = nullptr;
     std::vector<LightTreeNode> nodes_;
-    std::vector<uint32_t> parents_;  ///< place of each node in its parent
-    std::vector<uint32_t> places_;   ///< of each light; ~0 for those without intensity
-    std::vector<LightTreeGroup> groups_;   ///< of each place
-    std::vector<uint32_t> order_, ranks_;  ///< lights in the tree's order, and where each stands in it
-    std::vector<double> intensityBefore_;
+    std::vector<LightTreeWay> ways_;      ///< to each light
+    std::vector<LightTreeGroup> groups_;  ///< of each place
+    std::vector<LightTreeRank> ranks_;
     uint64_t digest_ = 0;            ///< of the bounds
 };
 

@@ -78,9 +78,9 @@ inline int columnOf(const float* weights, float& x) {
 }
 
 /// Are the lights below that child far enough to be as one?
-inline bool isFar(const LightTreeNode& node, int column, const LightTreeGroup& group, const LightTreePoint& p) {
+inline bool isFar(const LightTreeNode& node, int column, const LightTreePoint& p) {
     const float dx = p.x - node.x[column], dy = p.y - node.y[column], dz = p.z - node.z[column];
-    return dx * dx + dy * dy + dz * dz > group.far2;
+    return dx * dx + dy * dy + dz * dz > node.far2[column];
 }
 
 /// Where in the order a light of a group likely is that holds the part `u` of its intensity.
@@ -91,26 +91,27 @@ inline uint32_t guessIn(const LightTreeGroup& group, float u) {
 
 /// Draws one of a group by intensity; `chance` is its share. Lights of a group are mostly alike, and the guess is near.
 inline uint32_t drawFrom(const LightTreeView& tree, const LightTreeGroup& group, float& u, float& chance) {
-    const double* before = tree.intensityBefore;
-    const double first = before[group.begin], whole = before[group.end] - first, x = first + double(u) * whole;
-    uint32_t at = guessIn(group, u), low = group.begin, high = group.end;  // before[low] <= x < before[high]
-    while (high - low > 1 && (before[at] > x || before[at + 1] <= x)) {
-        (before[at] <= x ? low : high) = before[at] <= x ? at + 1 : at;
+    const LightTreeRank* ranks = tree.ranks;
+    const double x = group.before + double(u) * group.intensity;
+    uint32_t at = guessIn(group, u), low = group.begin, high = group.end;  // of low <= x < of high
+    while (high - low > 1 && (ranks[at].before > x || ranks[at + 1].before <= x)) {
+        (ranks[at].before <= x ? low : high) = ranks[at].before <= x ? at + 1 : at;
         at = low + (high - low) / 2;
     }
     if (high - low <= 1) at = low < group.end ? low : group.end - 1;
-    const double own = before[at + 1] - before[at];
-    chance = static_cast<float>(own / whole);
-    const float rest = own > 0 ? static_cast<float>((x - before[at]) / own) : 0.0f;
+    const double own = ranks[at + 1].before - ranks[at].before;
+    chance = static_cast<float>(own / group.intensity);
+    const float rest = own > 0 ? static_cast<float>((x - ranks[at].before) / own) : 0.0f;
     u = rest < 0x1.fffffep-1f ? rest : 0x1.fffffep-1f;
-    return tree.order[at];
+    return ranks[at].light;
 }
 
 /// A point on its way down the tree.
 struct Walker {
     int point;
     uint32_t node;                   ///< to be looked at next
-    const LightTreeGroup* group;     ///< to be drawn from next; null: none yet
+    const LightTreeGroup* group;     ///< to be drawn from; null: none yet
+    bool guessed;                    ///< what it likely draws is on its way from memory
     float u, probability, sinceFresh;
     bool fresh;                      ///< the second random number is unused
 };
@@ -118,7 +119,6 @@ struct Walker {
 inline void prefetchNode(const LightTreeView& tree, uint32_t node) {
     const char* bytes = reinterpret_cast<const char*>(&tree.nodes[node]);
     for (size_t line = 0; line < sizeof(LightTreeNode); line += 64) __builtin_prefetch(bytes + line);
-    __builtin_prefetch(&tree.groups[node * kWidth]);
 }
 
 /// Chooses a child by the weights of the walker's node, or the tree at all at the root. False if the walk ends.
@@ -152,12 +152,10 @@ inline bool descend(const LightTreeView& tree, const LightTreePoint& point, cons
         out.u = w.u;
         return false;
     }
-    const LightTreeGroup& group = tree.groups[w.node * kWidth + static_cast<uint32_t>(column)];
-    if (isFar(node, column, group, point)) {
+    if (isFar(node, column, point)) {
         if (w.fresh && w.sinceFresh < 4 * kDigits) w.u = v;
-        w.group = &group;
-        const uint32_t guess = guessIn(group, w.u);
-        __builtin_prefetch(&tree.intensityBefore[guess]), __builtin_prefetch(&tree.order[guess]);
+        w.group = &tree.groups[w.node * kWidth + static_cast<uint32_t>(column)];
+        __builtin_prefetch(w.group);
     } else {
         w.node = child;
         prefetchNode(tree, child);
@@ -172,7 +170,7 @@ void pickTogether(const LightTreeView& tree, const LightTreePoint* points, const
     alignas(64) float weights[kTogether][kWidth];
     Walker walkers[kTogether];
     for (int i = 0; i < count; ++i) {
-        walkers[i] = {i, 0, nullptr, u[i], 0, 0, true};
+        walkers[i] = {i, 0, nullptr, false, u[i], 0, 0, true};
         out[i] = LightTreeChoice();
     }
     while (count > 0) {
@@ -182,7 +180,11 @@ void pickTogether(const LightTreeView& tree, const LightTreePoint* points, const
         for (int i = 0; i < count; ++i) {
             Walker w = walkers[i];
             LightTreeChoice& choice = out[w.point];
-            if (w.group) {
+            if (w.group && !w.guessed) {
+                __builtin_prefetch(&tree.ranks[guessIn(*w.group, w.u)]);
+                w.guessed = true;
+                walkers[kept++] = w;
+            } else if (w.group) {
                 float inGroup = 1;
                 choice.light = drawFrom(tree, *w.group, w.u, inGroup);
                 choice.probability = w.probability * inGroup;
@@ -202,28 +204,25 @@ void pick(const LightTreeView& tree, const LightTreePoint* points, const float* 
                      count - first < kTogether ? count - first : kTogether);
 }
 
-float probability(const LightTreeView& tree, const LightTreePoint& point, float elsewhere, uint32_t place,
-                  uint32_t rank) {
-    // The way from the root.
-    constexpr int kDeepest = 64;
-    uint32_t way[kDeepest];
-    int length = 0;
-    for (uint32_t at = place; at != ~0u && length < kDeepest; at = tree.parents[at / kWidth]) way[length++] = at;
-    float product = 1;
-    for (int i = length - 1; i >= 0; --i) {
-        const LightTreeNode& node = tree.nodes[way[i] / kWidth];
-        const int column = static_cast<int>(way[i] % kWidth);
+float probability(const LightTreeView& tree, const LightTreePoint& point, float elsewhere, const LightTreeWay& way) {
+    float product = way.length > 0 ? 1 : 0;
+    uint32_t at = 0;
+    uint64_t columns = way.columns;
+    for (uint32_t i = 0; i < way.length; ++i, columns >>= LightTreeWay::kBits) {
+        const LightTreeNode& node = tree.nodes[at];
+        const auto column = static_cast<int>(columns & (kWidth - 1));
         alignas(64) float weights[kWidth];
         importance(node, point, weights);
         const float sum = sumOf(weights);
         if (!(weights[column] > 0)) return 0;
-        if (i == length - 1) product *= shareOf(sum, elsewhere);
+        if (i == 0) product *= shareOf(sum, elsewhere);
         product *= weights[column] / sum;
-        if (i == 0) break;
-        const LightTreeGroup& group = tree.groups[way[i]];
-        if (!isFar(node, column, group, point)) continue;
-        const double* before = tree.intensityBefore;
-        return product * static_cast<float>((before[rank + 1] - before[rank]) / (before[group.end] - before[group.begin]));
+        if (i + 1 < way.length && isFar(node, column, point)) {
+            const LightTreeGroup& group = tree.groups[at * kWidth + static_cast<uint32_t>(column)];
+            const double own = tree.ranks[way.rank + 1].before - tree.ranks[way.rank].before;
+            return product * static_cast<float>(own / group.intensity);
+        }
+        at = node.child[column];
     }
     return product;
 }

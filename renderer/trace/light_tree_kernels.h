@@ -17,22 +17,36 @@ struct alignas(64) LightTreeNode {
     float cosReach[kWidth];   ///< of the largest angle from there at which it still shines
     float bothSides[kWidth];  ///< 1: they face against the axis as well; else 0
     float intensity[kWidth];  ///< W/sr, luminance; 0: no child
+    float far2[kWidth];       ///< squared distance from the centre beyond which the lights below are as one (LightTreeGroup)
     uint32_t child[kWidth];   ///< index of a node, or of a light with kLight
 };
 
 /// The lights below a child that is a node: seen from far enough they are as one, and one of them is drawn by intensity.
 struct LightTreeGroup {
     uint32_t begin = 0, end = 0;  ///< in the order of the tree
-    float far2 = __builtin_huge_valf();  ///< squared distance from their centre beyond which that holds
+    double before = 0;            ///< intensity of all lights before them
+    double intensity = 0;         ///< of all of them
+};
+
+/// A light in the order of the tree, in which every subtree's are neighbours.
+struct LightTreeRank {
+    double before = 0;  ///< intensity of all lights before it
+    uint32_t light = 0;
+};
+
+/// The way from the root to a light.
+struct LightTreeWay {
+    static constexpr uint32_t kBits = 3, kMost = 64 / kBits;
+    uint64_t columns = 0;  ///< kBits a node, the root's last
+    uint32_t length = 0;   ///< nodes; 0: no way leads there, the light has no intensity
+    uint32_t rank = 0;     ///< in the order
 };
 
 /// A tree as the kernels read it.
 struct LightTreeView {
     const LightTreeNode* nodes = nullptr;       ///< the root first
-    const uint32_t* parents = nullptr;          ///< place of each node in its parent, ~0 for the root
     const LightTreeGroup* groups = nullptr;     ///< of each place
-    const uint32_t* order = nullptr;            ///< lights so that every subtree's are neighbours
-    const double* intensityBefore = nullptr;    ///< running sums over the order, from 0
+    const LightTreeRank* ranks = nullptr;       ///< and one more, behind the last light
 };
 
 /// What receives light: a point, and which way it faces.
@@ -59,9 +73,8 @@ struct LightTreeKernels {
     /// so that one's arithmetic and memory are not waited for by the next.
     void (*pick)(const LightTreeView& tree, const LightTreePoint* points, const float* elsewhere, const float* u,
                  const float* v, LightTreeChoice* out, int count);
-    /// Probability of the light at `place`, the `rank`-th in the order.
-    float (*probability)(const LightTreeView& tree, const LightTreePoint& point, float elsewhere, uint32_t place,
-                         uint32_t rank);
+    /// Probability of the light at the end of `way`.
+    float (*probability)(const LightTreeView& tree, const LightTreePoint& point, float elsewhere, const LightTreeWay& way);
     /// Probability that the choice falls on the tree at all.
     float (*share)(const LightTreeView& tree, const LightTreePoint& point, float elsewhere);
 };

@@ -108,7 +108,7 @@ void Lights::choose(std::span<const LightReceiver> receivers, const float* pickX
     if (picks_.empty()) return;
     const bool byTree = count > 0 && receivers[0].sampling == LightSampling::Tree && entries_.size() > 1 && finiteCount_ > 0;
     if (!byTree) {
-        for (size_t i = 0; i < count; ++i) choices[i] = choose(receivers[i], Vec2(pickX[i], pickY[i]));
+        for (size_t i = 0; i < count; ++i) prefetch(choices[i] = choose(receivers[i], Vec2(pickX[i], pickY[i])));
     } else {
         constexpr size_t kAtOnce = 64;
         LightTreePoint points[kAtOnce];
@@ -139,11 +139,15 @@ void Lights::choose(std::span<const LightReceiver> receivers, const float* pickX
                 } else if (const int k = drawnByWeight(weights[i], infinite, found[i].u, elsewhere[i]); k >= 0) {
                     choice = {finiteCount_ + static_cast<uint32_t>(k), found[i].probability * weights[i][k] / elsewhere[i]};
                 }
+                prefetch(choice);
             }
         }
     }
-    for (size_t i = 0; i < count; ++i)
-        if (choices[i].entry < triangles_.size()) __builtin_prefetch(&triangles_[choices[i].entry]);
+}
+
+/// What its sample reads.
+void Lights::prefetch(const Choice& choice) const {
+    if (choice.entry < triangles_.size()) __builtin_prefetch(&triangles_[choice.entry]);
 }
 
 float Lights::pickProbability(const LightReceiver& receiver, uint32_t entry) const {

@@ -80,6 +80,10 @@ public:
     /// `hitPosition` (unit `hitNormal`; `area` of the triangle, 0 if it is not known) or a light's body.
     float pdfTriangle(uint32_t instance, uint32_t primitive, const LightReceiver& receiver, const Vec3& direction,
                       const Vec3& hitPosition, const Vec3& hitNormal, float area = 0) const;
+    /// Asks for what pdfTriangle() of it reads first.
+    void prefetchTriangle(uint32_t instance, uint32_t primitive) const {
+        if (firstEntry_[instance] != kNone && !tree_.empty()) tree_.prefetch(firstEntry_[instance] + primitive);
+    }
     float pdfBody(int body, const LightReceiver& receiver, const Vec3& direction, const Vec3& hitPosition) const;
 
     /// Radiance that a path finds that leaves the scene along `direction` at `time`: the sky, and directional lights with an
@@ -135,6 +139,7 @@ private:
     void addInfinite(const PosedScene& posed, Collected& collected);
 
     Choice choose(const LightReceiver& receiver, Vec2 pick) const;
+    void prefetch(const Choice& choice) const;
     Choice chosenInfinite(const LightReceiver& receiver, float u, float share, float elsewhere) const;
     float infiniteImportance(const LightReceiver& receiver, uint32_t infinite) const;
     float infiniteImportance(const LightReceiver& receiver) const;
