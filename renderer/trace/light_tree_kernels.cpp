@@ -21,8 +21,10 @@ inline void importance(const LightTreeNode& node, const LightTreePoint& p, float
         const float distance2 = dx * dx + dy * dy + dz * dz;
         const float radius2 = node.radius[i] * node.radius[i];
         const bool inside = distance2 <= radius2;
-        const float inverse = 1.0f / std::sqrt(distance2 > 1e-30f ? distance2 : 1e-30f);
-        const float sinBall = inside ? 1.0f : node.radius[i] * inverse;
+        // Directions from inside do not matter, and it is never nearer than the sphere.
+        const float nearest2 = inside ? radius2 : distance2;
+        const float inverse = 1.0f / std::sqrt(nearest2 > 1e-30f ? nearest2 : 1e-30f);
+        const float sinBall = node.radius[i] * inverse;
         const float cosBall = std::sqrt(positive(1 - sinBall * sinBall));
 
         // Between what a light faces and the direction to the point: the least that it can be.
@@ -43,8 +45,7 @@ inline void importance(const LightTreeNode& node, const LightTreePoint& p, float
         const float bounded = cosNormal >= cosBall ? 1.0f : cosNormal * cosBall + sinNormal * sinBall;
         const float cosArriving = inside || p.facing == 0 ? 1.0f : positive(bounded);
 
-        const float nearest2 = distance2 > radius2 ? distance2 : radius2;
-        const float value = node.intensity[i] * cosLeaving * cosArriving / (nearest2 > 1e-30f ? nearest2 : 1e-30f);
+        const float value = node.intensity[i] * cosLeaving * cosArriving * (inverse * inverse);
         result[i] = cosLeaving > node.cosReach[i] && node.intensity[i] > 0 ? value : 0.0f;
     }
 }
@@ -109,11 +110,16 @@ inline uint32_t drawFrom(const LightTreeView& tree, const LightTreeGroup& group,
 /// A point on its way down the tree.
 struct Walker {
     int point;
-    uint32_t node;                   ///< to be looked at next
-    const LightTreeGroup* group;     ///< to be drawn from; null: none yet
-    bool guessed;                    ///< what it likely draws is on its way from memory
+    uint32_t node;  ///< to be looked at next
     float u, probability, sinceFresh;
-    bool fresh;                      ///< the second random number is unused
+    bool fresh;     ///< the second random number is unused
+};
+
+/// A point that has come to a group.
+struct Drawer {
+    int point;
+    const LightTreeGroup* group;
+    float u, probability;
 };
 
 inline void prefetchNode(const LightTreeView& tree, uint32_t node) {
@@ -121,23 +127,25 @@ inline void prefetchNode(const LightTreeView& tree, uint32_t node) {
     for (size_t line = 0; line < sizeof(LightTreeNode); line += 64) __builtin_prefetch(bytes + line);
 }
 
-/// Chooses a child by the weights of the walker's node, or the tree at all at the root. False if the walk ends.
-inline bool descend(const LightTreeView& tree, const LightTreePoint& point, const float* weights, float elsewhere, float v,
-                    Walker& w, LightTreeChoice& out) {
+enum class Step { Ends, Down, Draws };
+
+/// Chooses a child by the weights of the walker's node, or the tree at all at the root.
+inline Step descend(const LightTreeView& tree, const LightTreePoint& point, const float* weights, float elsewhere, float v,
+                    Walker& w, Drawer& drawer, LightTreeChoice& out) {
     const float sum = sumOf(weights);
     if (w.node == 0) {
         const float share = shareOf(sum, elsewhere);
         if (w.u >= share) {
-            if (!(elsewhere > 0)) return false;
+            if (!(elsewhere > 0)) return Step::Ends;
             out.elsewhere = true;
             out.probability = 1 - share;
             out.u = (w.u - share) / (1 - share);
-            return false;
+            return Step::Ends;
         }
         w.u /= share;
         w.probability = w.sinceFresh = share;
     }
-    if (!(sum > 0)) return false;
+    if (!(sum > 0)) return Step::Ends;
     if (w.fresh && w.sinceFresh < kDigits) w.u = v, w.fresh = false;
     w.u *= sum;
     const int column = columnOf(weights, w.u);
@@ -150,17 +158,17 @@ inline bool descend(const LightTreeView& tree, const LightTreePoint& point, cons
         out.light = child & ~LightTreeNode::kLight;
         out.probability = w.probability;
         out.u = w.u;
-        return false;
+        return Step::Ends;
     }
     if (isFar(node, column, point)) {
-        if (w.fresh && w.sinceFresh < 4 * kDigits) w.u = v;
-        w.group = &tree.groups[w.node * kWidth + static_cast<uint32_t>(column)];
-        __builtin_prefetch(w.group);
-    } else {
-        w.node = child;
-        prefetchNode(tree, child);
+        const LightTreeGroup& group = tree.groups[w.node * kWidth + static_cast<uint32_t>(column)];
+        __builtin_prefetch(&group);
+        drawer = {w.point, &group, w.fresh && w.sinceFresh < 4 * kDigits ? v : w.u, w.probability};
+        return Step::Draws;
     }
-    return true;
+    w.node = child;
+    prefetchNode(tree, child);
+    return Step::Down;
 }
 
 constexpr int kTogether = 64;
@@ -169,31 +177,33 @@ void pickTogether(const LightTreeView& tree, const LightTreePoint* points, const
                   const float* v, LightTreeChoice* out, int count) {
     alignas(64) float weights[kTogether][kWidth];
     Walker walkers[kTogether];
+    Drawer drawers[kTogether];
     for (int i = 0; i < count; ++i) {
-        walkers[i] = {i, 0, nullptr, false, u[i], 0, 0, true};
+        walkers[i] = {i, 0, u[i], 0, 0, true};
         out[i] = LightTreeChoice();
     }
+    int drawing = 0;
     while (count > 0) {
-        for (int i = 0; i < count; ++i)
-            if (!walkers[i].group) importance(tree.nodes[walkers[i].node], points[walkers[i].point], weights[i]);
+        for (int i = 0; i < count; ++i) importance(tree.nodes[walkers[i].node], points[walkers[i].point], weights[i]);
         int kept = 0;
         for (int i = 0; i < count; ++i) {
             Walker w = walkers[i];
-            LightTreeChoice& choice = out[w.point];
-            if (w.group && !w.guessed) {
-                __builtin_prefetch(&tree.ranks[guessIn(*w.group, w.u)]);
-                w.guessed = true;
-                walkers[kept++] = w;
-            } else if (w.group) {
-                float inGroup = 1;
-                choice.light = drawFrom(tree, *w.group, w.u, inGroup);
-                choice.probability = w.probability * inGroup;
-                choice.u = w.u;
-            } else if (descend(tree, points[w.point], weights[i], elsewhere[w.point], v[w.point], w, choice)) {
-                walkers[kept++] = w;
-            }
+            const Step step = descend(tree, points[w.point], weights[i], elsewhere[w.point], v[w.point], w,
+                                      drawers[drawing], out[w.point]);
+            walkers[kept] = w;
+            kept += step == Step::Down ? 1 : 0;
+            drawing += step == Step::Draws ? 1 : 0;
         }
         count = kept;
+    }
+    for (int i = 0; i < drawing; ++i) __builtin_prefetch(&tree.ranks[guessIn(*drawers[i].group, drawers[i].u)]);
+    for (int i = 0; i < drawing; ++i) {
+        Drawer& drawer = drawers[i];
+        LightTreeChoice& choice = out[drawer.point];
+        float inGroup = 1;
+        choice.light = drawFrom(tree, *drawer.group, drawer.u, inGroup);
+        choice.probability = drawer.probability * inGroup;
+        choice.u = drawer.u;
     }
 }
 
