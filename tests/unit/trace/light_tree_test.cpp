@@ -208,6 +208,28 @@ TEST(LightTree, EdgeCases) {
     EXPECT_TRUE(std::isfinite(choice.probability));
 }
 
+/// Cuts by cost alone would take a light or two off at each level.
+TEST(LightTree, LightsInAGeometricRowStayWithinReach) {
+    std::vector<LightBounds> lights(200);
+    for (uint32_t i = 0; i < lights.size(); ++i) {
+        const float at = std::pow(1.4f, static_cast<float>(i) - 100);
+        lights[i].box = {Vec3(at, 0, 0), Vec3(at, 0, 0)};
+        lights[i].cosSpread = -1;
+        lights[i].intensity = at * at;
+    }
+    LightTree tree;
+    tree.build(lights);
+    const LightTreePoint point = pointAt(Vec3(0, 1, 0), Vec3(0, 1, 0), 0);
+    double sum = 0;
+    for (uint32_t i = 0; i < lights.size(); ++i) sum += tree.probability(point, 0, i);
+    EXPECT_NEAR(sum, 1, 1e-4);
+    for (uint32_t k = 0; k < 2000; ++k) {
+        const LightTreeChoice choice = tree.pick(point, 0, {number(61, k), number(62, k)});
+        ASSERT_LT(choice.light, lights.size());
+        EXPECT_NEAR(choice.probability / tree.probability(point, 0, choice.light), 1, 1e-4);
+    }
+}
+
 TEST(LightTree, InstructionSetsAgree) {
     const std::vector<LightBounds> lights = scattered(500);
     LightTree tree;

@@ -1,8 +1,10 @@
 // Choosing lights and points of lights: what is drawn agrees with the density that is told.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <numeric>
 
+#include "base/isa.h"
 #include "math/hash.h"
 #include "math/warp.h"
 #include "support/transport_scene.h"
@@ -252,6 +254,7 @@ void expectNear(const Vec3& a, const Vec3& b, float tolerance, size_t lane) {
 }
 
 /// Batches are sampled by kernels, lane by lane what samplePoint() gives: every kind of light, each side of triangles.
+/// And the same bytes on every instruction set.
 TEST(Lights, LanesSampleAsOneByOne) {
     TinyScene tiny = manyLights();
     Material glow = lambert(0);
@@ -269,7 +272,7 @@ TEST(Lights, LanesSampleAsOneByOne) {
     TraceScene scene;
     bindTo(scene, tiny.pose());
 
-    const auto lanes = std::make_unique<PlainLanes>();
+    const auto lanes = std::make_unique<PlainLanes>(), plain = std::make_unique<PlainLanes>();
     const auto lights = std::make_unique<LightLanes>();
     std::vector<LightReceiver> receivers(PlainLanes::kMost);
     std::vector<Lights::Choice> choices(PlainLanes::kMost);
@@ -286,7 +289,14 @@ TEST(Lights, LanesSampleAsOneByOne) {
             lanes->position.set(static_cast<int>(i), place);
             lanes->lightPointX[i] = numbers.one(), lanes->lightPointY[i] = numbers.one();
         }
-        scene.lights.samplePoints(choices, receivers, *lights, *lanes);
+        const Isa best = activeIsa();
+        for (const Isa isa : {Isa::Baseline, Isa::V3, Isa::V4}) {
+            if (isa > best) continue;
+            setIsa(isa);
+            scene.lights.samplePoints(choices, receivers, *lights, *lanes);
+            if (isa == Isa::Baseline) *plain = *lanes;
+            EXPECT_EQ(std::memcmp(lanes.get(), plain.get(), sizeof(PlainLanes)), 0) << isaName(isa);
+        }
         for (size_t i = 0; i < PlainLanes::kMost; ++i) {
             LightSample one;
             const int lane = static_cast<int>(i);

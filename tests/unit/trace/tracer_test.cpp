@@ -49,60 +49,6 @@ TEST(Tracer, HitsAreNamedAndFoundAgain) {
     EXPECT_FALSE(hits[3].valid());
 }
 
-/// Triangles here and there in a cube.
-Mesh soup(uint32_t count, float size) {
-    Mesh mesh;
-    uint32_t bits = 1;
-    const auto next = [&] { return unitFloat(bits = pcgHash(bits)); };
-    const auto place = [&] {
-        const float x = next(), y = next();
-        return Vec3(x, y, next());
-    };
-    for (uint32_t i = 0; i < count; ++i) {
-        const Vec3 corner = place() * 4.0f - Vec3(2);
-        for (int k = 0; k < 3; ++k) mesh.positions.push_back(corner + place() * size);
-        mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-    }
-    return mesh;
-}
-
-/// Rays go to Embree in packets and streams by the size of the scene: each finds what it finds alone.
-TEST(Tracer, RaysFindTogetherWhatTheyFindAlone) {
-    for (const uint32_t triangles : {300u, 12000u}) {
-        TinyScene tiny;
-        tiny.add(soup(triangles, triangles < 1000 ? 1.0f : 0.2f), lambert(0.5f));
-        Tracer tracer;
-        tracer.bind(tiny.pose());
-        constexpr size_t kRays = 3001;
-        std::vector<Ray> rays(kRays);
-        for (uint32_t i = 0; i < kRays; ++i) {
-            const auto u = [&](uint32_t k) { return unitFloat(hashCombine(i, k)); };
-            rays[i].origin = Vec3(u(0), u(1), u(2)) * 4.0f - Vec3(2);
-            rays[i].direction = sampleSphere({u(3), u(4)});
-            if (i % 3 == 0) rays[i].tmax = u(5);
-        }
-        std::vector<Hit> hits(kRays);
-        std::vector<uint8_t> blocked(kRays);
-        tracer.closestHits(rays, hits);
-        tracer.occluded(rays, blocked);
-        size_t met = 0;
-        for (size_t i = 0; i < kRays; ++i) {
-            Hit alone;
-            uint8_t aloneBlocked = 2;
-            tracer.closestHits({&rays[i], 1}, {&alone, 1});
-            tracer.occluded({&rays[i], 1}, {&aloneBlocked, 1});
-            ASSERT_EQ(hits[i].valid(), alone.valid()) << i;
-            EXPECT_EQ(hits[i].point.primitive, alone.point.primitive) << i;
-            if (alone.valid()) { EXPECT_NEAR(hits[i].distance, alone.distance, 1e-5f * alone.distance) << i; }
-            EXPECT_EQ(blocked[i], alone.valid()) << i;
-            EXPECT_EQ(aloneBlocked, alone.valid()) << i;
-            met += alone.valid();
-        }
-        EXPECT_GT(met, kRays / 20) << triangles;
-        EXPECT_LT(met, kRays) << triangles;
-    }
-}
-
 TEST(Tracer, OcclusionTellsTheNearestBlocker) {
     Tracer tracer;
     tracer.bind(litFloor().pose());
