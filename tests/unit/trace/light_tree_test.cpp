@@ -208,8 +208,8 @@ TEST(LightTree, EdgeCases) {
     EXPECT_TRUE(std::isfinite(choice.probability));
 }
 
-/// Cuts by cost alone would take a light or two off at each level.
-TEST(LightTree, LightsInAGeometricRowStayWithinReach) {
+/// The most uneven of trees: each cut takes a few lights off.
+TEST(LightTree, LightsInAGeometricRow) {
     std::vector<LightBounds> lights(200);
     for (uint32_t i = 0; i < lights.size(); ++i) {
         const float at = std::pow(1.4f, static_cast<float>(i) - 100);
