@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "image/plane_memory.h"
 #include "math/vector.h"
 
 namespace lumi {
@@ -63,7 +64,7 @@ public:
 private:
     Extent2 extent_;
     int channels_ = 0;
-    std::vector<T> values_;
+    std::vector<T, PlaneAllocator<T>> values_;
 };
 using Image = ImageOf<float>;
 using IdImage = ImageOf<uint32_t>;
