@@ -41,15 +41,6 @@ void Illumination::reset(Extent2 extent) {
     sampleVariance.reset(extent, 1);
 }
 
-void updateLuminance(Illumination& illumination) {
-    const AtrousKernels& kernels = atrousKernels();
-    const Image& rgb = illumination.rgb;
-    parallelRanges(rgb.extent().area(), 1 << 14, [&](int64_t begin, int64_t end) {
-        const float* const row[3] = {rgb.plane(0).data + begin, rgb.plane(1).data + begin, rgb.plane(2).data + begin};
-        kernels.luminanceRow(row, illumination.luminance.data() + begin, static_cast<int>(end - begin));
-    });
-}
-
 bool atrousLevel(const SurfaceGuide& guide, const AtrousSettings& settings, int step,
                  const std::vector<const Illumination*>& in, const std::vector<Illumination*>& out, std::stop_token stop) {
     assert(in.size() == out.size() && in.size() <= AtrousRow::kMaxComponents);

@@ -17,9 +17,6 @@ struct Illumination {
     size_t bytes() const { return rgb.bytes() + luminance.bytes() + sampleVariance.bytes(); }
 };
 
-/// Rec. 709 luminance of `illumination.rgb`.
-void updateLuminance(Illumination& illumination);
-
 struct AtrousSettings {
     EdgeStopping edges;
     bool variancePrefilter = true;  ///< the 3x3 Gaussian of eq. 5

@@ -110,17 +110,10 @@ void filterRow(const AtrousRow& row) {
     usual ? filterLoop<2, true>(row) : filterLoop<2, false>(row);
 }
 
-void luminanceRow(const float* const rgb[3], float* __restrict out, int width) {
-    const float* __restrict r = rgb[0];
-    const float* __restrict g = rgb[1];
-    const float* __restrict b = rgb[2];
-    for (int x = 0; x < width; ++x) out[x] = 0.2126f * r[x] + 0.7152f * g[x] + 0.0722f * b[x];
-}
-
 }  // namespace
 
 const AtrousKernels& atrousTable() {
-    static const AtrousKernels table{filterRow, luminanceRow};
+    static const AtrousKernels table{filterRow};
     return table;
 }
 

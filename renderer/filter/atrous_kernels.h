@@ -30,8 +30,6 @@ struct AtrousRow {
 struct AtrousKernels {
     /// Eq. 1 and the variance of its result, with the weights of eqs. 2 to 5 [Schied17].
     void (*filterRow)(const AtrousRow& row);
-    /// Rec. 709 luminance of a row.
-    void (*luminanceRow)(const float* const rgb[3], float* out, int width);
 };
 
 LUMI_KERNELS(AtrousKernels, atrous)

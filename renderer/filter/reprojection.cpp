@@ -49,6 +49,19 @@ ReprojectedRow::ReprojectedRow(int pixels) {
     }
 }
 
+bool ReprojectedRow::inARow(int count) const {
+    bool all = true;
+    for (const auto& indices : index) all = all && reprojectionKernels().inARow(indices.data(), count);
+    return all;
+}
+
+bool ReprojectedRow::follows(int k) const {
+    const auto at = static_cast<size_t>(k);
+    bool all = true;
+    for (const auto& indices : index) all = all && indices[at] == indices[at - 1] + 1;
+    return all;
+}
+
 bool ReprojectedRow::lost(int k) const {
     const auto at = static_cast<size_t>(k);
     return refusals[0][at] != 0 && refusals[1][at] != 0 && refusals[2][at] != 0 && refusals[3][at] != 0;

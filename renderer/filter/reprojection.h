@@ -52,6 +52,10 @@ struct ReprojectedRow {
     std::vector<float> weight[4];
 
     explicit ReprojectedRow(int pixels);
+    /// Each tap of the first `count` pixels lies in memory one behind that of the pixel before.
+    bool inARow(int count) const;
+    /// Those of the k-th pixel (1 or later) do.
+    bool follows(int k) const;
     /// Nothing of the k-th pixel's passed the tests.
     bool lost(int k) const;
     ReprojectedTaps pixel(int k) const;

@@ -117,17 +117,32 @@ int shareOut(const ReprojectionRow& row) {
     return without;
 }
 
+bool inARow(const int32_t* __restrict numbers, int count) {
+    int32_t differing = 0;
+    for (int k = 0; k < count; ++k) differing |= numbers[k] ^ (numbers[0] + k);
+    return differing == 0;
+}
+
+bool areOne(const int32_t* __restrict numbers, int count) {
+    int32_t differing = 0;
+    for (int k = 0; k < count; ++k) differing |= numbers[k] ^ numbers[0];
+    return differing == 0;
+}
+
 int tapRow(const ReprojectionRow& row) {
     Points points;
     for (int first = row.begin; first < row.end; first += kBlock) {
         const int last = first + kBlock < row.end ? first + kBlock : row.end;
         findPoints(row, first, last, points);
         const auto follows = [&](int k) { return points.x0[k] == points.x0[k - 1] + 1 && points.y0[k] == points.y0[k - 1]; };
-        forIndexRuns(0, last - first, follows, [&](int from, int to, bool inARow) {
+        const auto test = [&](int from, int to, bool inARow) {
             const bool inside = points.x0[from] >= 0 && points.x0[to - 1] + 1 < row.width && points.y0[from] >= 0 && points.y0[from] + 1 < row.height;
             for (int tap = 0; tap < 4; ++tap)
                 inARow && inside ? testTap<true>(row, tap, first, from, to, points) : testTap<false>(row, tap, first, from, to, points);
-        });
+        };
+        const int count = last - first;
+        if (inARow(points.x0, count) && areOne(points.y0, count)) test(0, count, true);
+        else forIndexRuns(0, count, follows, test);
     }
     return shareOut(row);
 }
@@ -135,7 +150,7 @@ int tapRow(const ReprojectionRow& row) {
 }  // namespace
 
 const ReprojectionKernels& reprojectionTable() {
-    static const ReprojectionKernels table{tapRow};
+    static const ReprojectionKernels table{tapRow, inARow};
     return table;
 }
 

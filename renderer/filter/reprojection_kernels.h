@@ -28,6 +28,8 @@ struct ReprojectionKernels {
     /// 2x2 bilinear taps, each tested; a refused tap's weight is spread uniformly over the others. Returns the number of
     /// pixels that none is left of.
     int (*tapRow)(const ReprojectionRow& row);
+    /// Each of `count` numbers is one more than the one before.
+    bool (*inARow)(const int32_t* numbers, int count);
 };
 
 LUMI_KERNELS(ReprojectionKernels, reprojection)

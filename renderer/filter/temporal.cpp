@@ -33,7 +33,7 @@ HistoryTaps tapsOf(const ReprojectedTaps& pixel) {
     return taps;
 }
 
-constexpr int kBlock = 256;  ///< pixels whose taps stay in the first-level cache
+constexpr int kBlock = 512;  ///< pixels whose taps stay in the first-level cache
 
 /// Scratch of one task.
 struct TemporalBlock {
@@ -65,21 +65,17 @@ private:
         }
         const ReprojectedRow& taps = scratch.taps;
         const bool anyLost = reprojection_.row(y, first, last, scratch.taps) > 0;
-        const auto follows = [&taps](int k) {
-            const auto at = static_cast<size_t>(k);
-            bool all = true;
-            for (const auto& index : taps.index) all = all && index[at] == index[at - 1] + 1;
-            return all;
-        };
-        forIndexRuns(0, last - first, follows, [&](int from, int to, bool inARow) {
-            integrate(y, first + from, to - from, tapsOf(taps, from, inARow), scratch);
-        });
-        if (!anyLost && !verdict_) return;
-        for (int x = first; x < last; ++x) {
-            const int k = x - first;
-            const ReprojectedTaps pixel = taps.lost(k) ? reprojection_.widen(x, y) : taps.pixel(k);
-            if (taps.lost(k) && pixel.count > 0) integrate(y, x, 1, tapsOf(pixel), scratch);
-            if (verdict_) judge(x, y, pixel.wide ? pixel : taps.pixel(k));
+        const int count = last - first;
+        if (taps.inARow(count)) integrate(y, first, count, tapsOf(taps, 0, true), scratch);
+        else
+            forIndexRuns(0, count, [&taps](int k) { return taps.follows(k); }, [&](int from, int to, bool inARow) {
+                integrate(y, first + from, to - from, tapsOf(taps, from, inARow), scratch);
+            });
+        for (int k = 0; k < count && (anyLost || verdict_); ++k) {
+            ReprojectedTaps wide;
+            if (anyLost && taps.lost(k)) wide = reprojection_.widen(first + k, y);
+            if (wide.count > 0) integrate(y, first + k, 1, tapsOf(wide), scratch);
+            if (verdict_) judge(first + k, y, wide.wide ? wide : taps.pixel(k));
         }
     }
 

@@ -14,6 +14,13 @@ namespace {
 
 constexpr Extent2 kExtent{83, 41};
 
+/// Rec. 709 luminance of the planes' colour.
+void fillLuminance(Illumination& planes) {
+    for (int y = 0; y < kExtent.height; ++y)
+        for (int x = 0; x < kExtent.width; ++x)
+            planes.luminance.at(0, x, y) = 0.2126f * planes.rgb.at(0, x, y) + 0.7152f * planes.rgb.at(1, x, y) + 0.0722f * planes.rgb.at(2, x, y);
+}
+
 /// Everything a level reads, at random: a bumpy surface with a stripe of sky.
 struct Planes {
     Image inverseDepth{kExtent, 1}, slope{kExtent, 2}, normal{kExtent, 3};
@@ -35,7 +42,7 @@ struct Planes {
             planes.reset(kExtent);
             for (size_t i = 0; i < planes.rgb.size(); ++i) planes.rgb.data()[i] = random.between(0, 2);
             for (size_t i = 0; i < planes.sampleVariance.size(); ++i) planes.sampleVariance.data()[i] = random.between(0, 0.2f);
-            updateLuminance(planes);
+            fillLuminance(planes);
         }
     }
     SurfaceGuide guide() const {
@@ -169,7 +176,7 @@ TEST(Atrous, EdgeWeightsAreEquations3To5) {
 TEST(Atrous, SkyTakesNothingAndGivesNothing) {
     Planes planes(3);
     for (int y = 0; y < kExtent.height; ++y) planes.light[0].rgb.at(0, 63, y) = 1e6f;
-    updateLuminance(planes.light[0]);
+    fillLuminance(planes.light[0]);
     Illumination out;
     ASSERT_TRUE(atrousLevel(planes.guide(), {}, 2, {&planes.light[0]}, {&out}, {}));
     EXPECT_EQ(out.rgb.at(0, 63, 20), 1e6f);
