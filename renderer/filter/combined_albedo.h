@@ -1,15 +1,13 @@
 #pragma once
+#include "frame/stored_albedo.h"
 
 namespace lumi {
 
-constexpr float kLeastAlbedo = 0.01f;  ///< below it the signals store a lobe undivided, with albedo 1 (frame/signals.h)
-
-/// What light is divided by: the lobes' albedos together, one channel, as the signals store them; see DemodulatedFrame. An
-/// albedo of exactly 1 beside one that is smaller is the mark of an undivided lobe. NaN counts as 1.
+/// What light is divided by: the lobes' albedos together, one channel, as the signals store them; see DemodulatedFrame. A
+/// lobe that is stored undivided, of an albedo below 0.01, counts as none, so that what is divided does not jump where a
+/// dark texture or metal passes that mark. NaN counts as 1.
 [[gnu::always_inline]] inline float combinedAlbedo(float diffuse, float specular) {
-    float sum = diffuse + specular;
-    sum = specular == 1.0f ? diffuse : sum;
-    sum = diffuse == 1.0f ? specular : sum;
+    float sum = (diffuse == 1.0f ? 0.0f : diffuse) + (specular == 1.0f ? 0.0f : specular);
     sum = sum < 1.0f ? sum : 1.0f;  // NaN too
     return sum > kLeastAlbedo ? sum : kLeastAlbedo;
 }

@@ -8,8 +8,8 @@ namespace lumi {
 ///
 /// The albedo is the sum of the lobes' directional albedos, which is what the paper's "per-layer albedos, weighted by
 /// their sampling probability" comes to when lobes are chosen in proportion to theirs; a channel of a lobe that the
-/// signals store undivided (frame/signals.h: below 0.01, albedo 1) does not count beside one that is not. It is at least
-/// 0.01, so that no division blows up.
+/// signals store undivided (frame/signals.h: below 0.01, albedo 1) does not count. It is at least 0.01, so that no division
+/// blows up.
 struct DemodulatedFrame {
     Image emission;   ///< RGB; light that reaches the camera unscattered, emitters and sky
     Image albedo;     ///< RGB in [0.01, 1]

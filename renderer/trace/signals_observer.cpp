@@ -6,13 +6,11 @@
 #include <cmath>
 
 #include "frame/motion.h"
+#include "frame/stored_albedo.h"
 #include "trace/surface.h"
 
 namespace lumi {
 namespace {
-
-/// Below this an albedo is not divided by (frame/signals.h).
-constexpr float kLeastAlbedo = 0.01f;
 
 const SignalSet kDemodulated{Signal::DirectDiffuse, Signal::IndirectDiffuse, Signal::DirectSpecular,
                              Signal::IndirectSpecular};
@@ -225,11 +223,10 @@ void SignalsObserver::writePixel(int x, int y, const TileSums& tile, size_t loca
     set3(Signal::Indirect, x, y, Vec3((sums.indirectDiffuse + sums.indirectSpecular) * scale));
     if (!albedos_) return;
     // Demodulation, channel by channel; what is hardly reflected stays undivided.
-    Vec3 albedo = glm::clamp(Vec3(sums.albedo * scale), 0.0f, 1.0f);
-    Vec3 specularAlbedo = glm::clamp(Vec3(sums.specularAlbedo * scale), 0.0f, 1.0f);
+    Vec3 albedo, specularAlbedo;
     for (int c = 0; c < 3; ++c) {
-        if (!(albedo[c] >= kLeastAlbedo)) albedo[c] = 1;
-        if (!(specularAlbedo[c] >= kLeastAlbedo)) specularAlbedo[c] = 1;
+        albedo[c] = storedAlbedo(static_cast<float>(sums.albedo[c] * scale));
+        specularAlbedo[c] = storedAlbedo(static_cast<float>(sums.specularAlbedo[c] * scale));
     }
     set3(Signal::Albedo, x, y, albedo);
     set3(Signal::SpecularAlbedo, x, y, specularAlbedo);

@@ -32,13 +32,10 @@ struct Batch {
     }
 };
 
-/// A lobe's albedo as the signals store it.
-float stored(float albedo) { return albedo >= kLeastAlbedo ? albedo : 1.0f; }
-
 ComponentLuminance luminanceOf(const PathLighting& lighting) {
     Vec3 direct, indirect;
     for (int c = 0; c < 3; ++c) {
-        const float albedo = combinedAlbedo(stored(lighting.albedo[c]), stored(lighting.specularAlbedo[c]));
+        const float albedo = combinedAlbedo(storedAlbedo(lighting.albedo[c]), storedAlbedo(lighting.specularAlbedo[c]));
         direct[c] = lighting.direct[c] / albedo;
         indirect[c] = lighting.indirect[c] / albedo;
     }
