@@ -17,7 +17,8 @@ constexpr const char* kExitCodes =
 
 std::string sceneList() {
     std::string text = "Scenes: a path (.json .gltf .glb .obj, or an .hdr/.exr sky), or one of:\n";
-    for (const SceneEntry& entry : listScenes()) text += fmt::format("  {:<16}{}\n", entry.name, entry.title);
+    for (const SceneEntry& entry : listScenes())
+        text += fmt::format("  {:<16}{}{}\n", entry.name, entry.title, entry.missing.empty() ? "" : " (needs $LUMISCOPE_ASSETS)");
     return text;
 }
 

@@ -43,7 +43,8 @@ void listSceneTable(const MachineOptions& machine) {
     std::vector<Row> rows;
     for (const SceneEntry& entry : listScenes()) {
         all.push_back({{"id", entry.name}, {"title", entry.title}, {"path", entry.path.string()}});
-        rows.push_back({entry.name, entry.title});
+        if (!entry.missing.empty()) all.back()["missing"] = entry.missing;
+        rows.push_back({entry.name, entry.title + (entry.missing.empty() ? "" : " (not here: " + entry.missing + ")")});
     }
     print(machine, all, rows);
 }

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "scene/asset_folder.h"
 #include "scene/load.h"
 #include "scene/scene_file.h"
 
@@ -60,7 +61,7 @@ std::vector<SceneEntry> listScenes() {
         for (const fs::directory_entry& file : fs::directory_iterator(folder, ignored)) {
             const std::string name = file.path().stem().string();
             const bool known = std::any_of(entries.begin(), entries.end(), [&](const auto& e) { return e.name == name; });
-            if (!known && isSceneFile(file.path())) entries.push_back({name, "", file.path()});
+            if (!known && isSceneFile(file.path())) entries.push_back({name, "", file.path(), ""});
         }
     }
     const auto rank = [](const SceneEntry& entry) {
@@ -72,6 +73,7 @@ std::vector<SceneEntry> listScenes() {
     for (SceneEntry& entry : entries) {
         entry.title = sceneFileTitle(entry.path);
         if (entry.title.empty()) entry.title = entry.name;
+        entry.missing = missingAsset(entry.path);
     }
     return entries;
 }

@@ -37,6 +37,7 @@ std::filesystem::path findScene(const std::string& name);
 struct SceneEntry {
     std::string name, title;
     std::filesystem::path path;
+    std::string missing;  ///< says which asset of its is not there (scene/asset_folder.h); empty: all are
 };
 std::vector<SceneEntry> listScenes();
 

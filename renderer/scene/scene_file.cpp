@@ -11,7 +11,6 @@ namespace lumi {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr uint64_t kMaxSceneFileBytes = uint64_t(256) << 20;
 
 void readVersion(ObjectReader& top) {
     const JsonValue& version = top.need("version");

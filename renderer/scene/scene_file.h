@@ -6,6 +6,8 @@
 
 namespace lumi {
 
+constexpr uint64_t kMaxSceneFileBytes = uint64_t(256) << 20;
+
 /// Loads our own scene file (JSON; DESIGN and README, "Scene files"). Keys that nobody knows, values out of range and
 /// names that nothing defines are Error(BadInput) at file:line:column. Cameras may be absent; see addDefaults().
 Scene loadSceneFile(const std::filesystem::path& path, MessageLog& log, const LoadOptions& options = {});

@@ -87,8 +87,8 @@ Scene loadAssetFile(const SceneFileContext& context, const AssetSource& source, 
         options.progress = [&](float fraction, const std::string& step) {
             context.options.progress(begin + fraction * (end - begin), step);
         };
-    const std::filesystem::path path = context.resolve(source.file);
     try {
+        const std::filesystem::path path = context.resolve(source.file);
         if (source.subdivision.scheme != SubdivisionScheme::None) return loadSubdivided(context, path, source.subdivision);
         return source.kind == "gltf" ? loadGltf(path, context.log, options) : loadObj(path, context.log, options);
     } catch (const Error& error) {

@@ -81,8 +81,9 @@ void readLight(SceneFileContext& context, const JsonMember& member) {
 }
 
 void readEnvironmentFile(SceneFileContext& context, const JsonValue& value, Environment& environment) {
-    const std::filesystem::path path = context.resolve(readText(context.tree, value, "file"));
+    const std::string name = readText(context.tree, value, "file");
     try {
+        const std::filesystem::path path = context.resolve(name);
         const std::vector<uint8_t> bytes = readFile(path);
         context.digests += digest(bytes);
         environment.image = std::make_shared<const Image>(loadImage(path));

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/asset_folder.h"
 #include "scene/asset_placer.h"
 #include "scene/json_reader.h"
 #include "scene/load.h"
@@ -26,8 +27,8 @@ struct SceneFileContext {
     std::map<std::string, int> instanceNodes;   ///< index into scene.nodes
     std::string digests;                        ///< of every file that was read, in order
 
-    /// `name` relative to the scene file's folder.
-    std::filesystem::path resolve(const std::string& name) const { return folder / name; }
+    /// `name` relative to the scene file's folder, or an asset (scene/asset_folder.h). Throws what findAsset() throws.
+    std::filesystem::path resolve(const std::string& name) const { return isAssetName(name) ? findAsset(name) : folder / name; }
     void report(float fraction, const std::string& step) const {
         if (options.progress) options.progress(fraction, step);
     }

@@ -99,12 +99,12 @@ void addKeys(Json& all, Json key, const char* help) {
 
 Json assetSchema() {
     Json kinds = Json::array();
-    kinds.push_back(closed({{"gltf", text("A .gltf or .glb file, relative to this file.")},
+    kinds.push_back(closed({{"gltf", text("A .gltf or .glb file, relative to this file, or assets: and a path under $LUMISCOPE_ASSETS.")},
                             {"scene", {{"type", "integer"}, {"minimum", 0}, {"description", "Which of its scenes."}}},
                             {"variant", text("Which of its material variants.")}},
                            "A glTF 2.0 asset."));
     Subdivision subdivision;
-    Json obj = {{"obj", text("An .obj file, relative to this file.")}};
+    Json obj = {{"obj", text("An .obj file, relative to this file, or assets: and a path under $LUMISCOPE_ASSETS.")}};
     obj.update(properties([&](ParameterVisitor& v) { subdivision.describe(v); }));
     kinds.push_back(closed(std::move(obj), "A Wavefront OBJ asset, or the cage of a subdivision surface."));
     for (Json& kind : kinds) kind["required"] = {kind["properties"].begin().key()};
@@ -120,7 +120,7 @@ Json assetSchema() {
 
 Json textureSchema() {
     TexturePlacement placement;
-    Json all = {{"file", text("A PNG, JPEG, BMP or TGA file, relative to this file.")}};
+    Json all = {{"file", text("A PNG, JPEG, BMP or TGA file, relative to this file, or assets: and a path under $LUMISCOPE_ASSETS.")}};
     for (const ProceduralTextureEntry& entry : proceduralTextureCatalog()) {
         const auto generator = entry.make();
         all[entry.name] = closed(properties([&](ParameterVisitor& v) { generator->describe(v); }), entry.help);
@@ -184,7 +184,7 @@ Json lightSchema() {
 Json environmentSchema() {
     Environment environment;
     Sky sky;
-    Json all = {{"file", text("An equirectangular .hdr or .exr, relative to this file; its centre is -Z.")}};
+    Json all = {{"file", text("An equirectangular .hdr or .exr, relative to this file, or assets: and a path under $LUMISCOPE_ASSETS; its centre is -Z.")}};
     all["sky"] = closed(properties([&](ParameterVisitor& v) { sky.describe(v); }), "A built-in daylight sky.");
     all.update(properties([&](ParameterVisitor& v) { environment.describe(v); }));
     return closed(std::move(all), "Light from infinitely far.");

@@ -1,8 +1,8 @@
 #include "study/bench_scene.h"
 
-#include <cstdlib>
-
+#include "base/error.h"
 #include "base/files.h"
+#include "scene/asset_folder.h"
 #include "scene/load.h"
 #include "session/document.h"
 #include "study/bench_program.h"
@@ -13,12 +13,11 @@ namespace fs = std::filesystem;
 
 std::optional<fs::path> benchSceneFile(const std::string& name) {
     if (name != "sponza") return findScene(name);
-    const char* folder = std::getenv("LUMISCOPE_ASSETS");
-    const fs::path assets = folder ? fs::path(folder) : fs::path(LUMISCOPE_SOURCE_DIR) / ".." / "shared" / "assets";
-    const fs::path file = assets / "gltf" / "Sponza" / "Sponza.gltf";
-    std::error_code ignored;
-    if (!fs::is_regular_file(file, ignored)) return std::nullopt;
-    return file;
+    try {
+        return findAsset("assets:gltf/Sponza/Sponza.gltf");
+    } catch (const Error&) {
+        return std::nullopt;
+    }
 }
 
 std::shared_ptr<const Scene> loadBenchScene(const fs::path& file, MessageLog& log, std::stop_token stop) {

@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <cstdlib>
 
 #include "base/error.h"
+#include "scene/asset_folder.h"
 #include "scene/load.h"
 #include "scene/scene_file.h"
 #include "study/study_file.h"
@@ -25,9 +25,17 @@ std::vector<fs::path> studyFolders() {
     return folders;
 }
 
-fs::path assetFolder() {
-    if (const char* variable = std::getenv("LUMISCOPE_ASSETS"); variable && *variable) return variable;
-    return fs::path(LUMISCOPE_SOURCE_DIR).parent_path() / "shared" / "assets";
+/// What find() gives; what it throws is bad input at `where`.
+template <class Find>
+fs::path headed(const std::string& where, const Find& find) {
+    try {
+        return find();
+    } catch (const Error& error) {
+        ErrorText text = error.text();
+        text.what += text.where.empty() ? "" : " (" + text.where + ")";
+        text.where = where;
+        throw Error(ErrorKind::BadInput, text);
+    }
 }
 
 }  // namespace
@@ -72,21 +80,12 @@ fs::path findStudy(const std::string& name) {
 }
 
 fs::path findStudyScene(const Study& study, const StudyScene& scene) {
-    constexpr std::string_view kAssets = "assets:";
-    if (scene.source.starts_with(kAssets)) {
-        const fs::path path = assetFolder() / scene.source.substr(kAssets.size());
-        if (!isFile(path)) throwBadInput({"no such asset", scene.where, path.string(), ""});
-        return path;
-    }
-    if (const fs::path beside = study.path.parent_path() / scene.source; isFile(beside)) return beside;
-    try {
-        return findScene(scene.source);
-    } catch (const Error& error) {
-        ErrorText text = error.text();
-        text.what += text.where.empty() ? "" : " (" + text.where + ")";
-        text.where = scene.where;
-        throw Error(ErrorKind::BadInput, text);
-    }
+    if (isAssetName(scene.source)) return headed(scene.where, [&] { return findAsset(scene.source); });
+    fs::path path = study.path.parent_path() / scene.source;
+    if (!isFile(path)) path = headed(scene.where, [&] { return findScene(scene.source); });
+    if (path.extension() != ".json") return path;
+    if (const std::string missing = missingAsset(path); !missing.empty()) throwBadInput({missing, scene.where, "", ""});
+    return path;
 }
 
 bool definesImage(const std::string& id) {

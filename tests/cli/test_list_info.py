@@ -95,9 +95,22 @@ class Info(CommandTest):
 
     def test_every_built_in_scene_loads_without_a_warning(self):
         for scene in self.good("list", "scenes", "--json").json:
+            if "missing" in scene:
+                print("left out:", scene["id"], scene["missing"])
+                continue
             info = self.good("info", scene["id"], "--json").json
             self.assertEqual(info["warnings"], [], scene["id"])
             self.assertGreater(info["triangles"], 0)
+
+    def test_a_scene_without_its_assets_says_what_is_missing(self):
+        nowhere = {"LUMISCOPE_ASSETS": "/nowhere"}
+        scenes = {s["id"]: s for s in self.good("list", "scenes", "--json", **nowhere).json}
+        self.assertEqual([name for name, scene in scenes.items() if "missing" in scene], ["sponza"])
+        self.assertIn("/nowhere/gltf/Sponza/Sponza.gltf: no such asset", scenes["sponza"]["missing"])
+        self.assertIn("no such asset", self.good("list", "scenes", **nowhere).out)
+        self.assertIn("needs $LUMISCOPE_ASSETS", self.good("--help", **nowhere).out)
+        self.refused(3, ["sponza.json:4:", "/nowhere/gltf/Sponza/Sponza.gltf", "$LUMISCOPE_ASSETS to name a folder"],
+                     "info", "sponza", "--quiet", **nowhere)
 
     def test_the_signals_hold_what_they_promise(self):
         for scene in ("cornell", "atrium", "parade", "still-life"):

@@ -299,6 +299,10 @@ class Errors(StudyTest):
         name = self.write(scenes=["cornell", {"scene": "assets:no/such.gltf", "optional": True}], seeds=[1], spp=[1])
         result = self.study(name, "--out", "out")
         self.assertIn("warning: scene \"such\" is left out", result.err)
+        result = self.good("study", self.write(scenes=["cornell", {"scene": "sponza", "optional": True}], seeds=[1], spp=[1]), "--out", "out2",
+                            **self.environment(), LUMISCOPE_ASSETS="/nowhere")
+        self.assertIn("warning: scene \"sponza\" is left out", result.err)
+        self.assertIn("/nowhere/gltf/Sponza/Sponza.gltf: no such asset", result.err)
         name = self.write(scenes=[{"scene": "assets:no/such.gltf", "optional": True}])
         self.refused(3, ["none of the study's scenes is there"], "study", name, "--quiet")
 

@@ -16,7 +16,8 @@ const std::vector<SceneEntry>& builtIn() {
     return entries;
 }
 
-bool sceneRow(const std::string& id, const std::string& title, const std::string& detail) {
+/// `there`: it can be opened.
+bool sceneRow(const std::string& id, const std::string& title, const std::string& detail, bool there = true) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, height = px(46);
     ImGui::PushID(id.c_str());
@@ -28,7 +29,7 @@ bool sceneRow(const std::string& id, const std::string& title, const std::string
         list.AddRectFilled(corner, corner + ImVec2(width, height), IM_COL32(255, 255, 255, 16), px(5));
     drawIcon(list, Icon::Layers, corner + ImVec2(px(24), 0.5f * height), px(18),
              ImGui::IsItemHovered() ? palette::kAccent : palette::kDim);
-    list.AddText(corner + ImVec2(px(48), px(6)), palette::kText, elided(title, width - px(60)).c_str());
+    list.AddText(corner + ImVec2(px(48), px(6)), there ? palette::kText : palette::kDim, elided(title, width - px(60)).c_str());
     const WithFont small(ui().fonts.small);
     list.AddText(corner + ImVec2(px(48), px(25)), palette::kDim, elided(detail, width - px(60)).c_str());
     ImGui::SetCursorScreenPos(corner + ImVec2(0, height + px(2)));
@@ -63,11 +64,13 @@ bool drawScenes(AppState& state) {
     ImGui::Dummy(ImVec2(0, px(6)));
     ImGui::BeginChild("scenes");
     smallText("Built in", palette::kFaint);
-    for (const SceneEntry& entry : builtIn())
-        if (sceneRow(entry.name, entry.title.empty() ? entry.name : entry.title, entry.name)) {
-            state.open(entry.path);
+    for (const SceneEntry& entry : builtIn()) {
+        const bool there = entry.missing.empty();
+        if (sceneRow(entry.name, entry.title, entry.name + (there ? "" : ": its files are not in $LUMISCOPE_ASSETS"), there)) {
+            state.open(entry.path);  // what is missing is the error that loading it shows
             opened = true;
         }
+    }
     if (!state.recentScenes.empty()) {
         ImGui::Dummy(ImVec2(0, px(4)));
         smallText("Recent", palette::kFaint);

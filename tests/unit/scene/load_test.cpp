@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "base/files.h"
+#include "image/png.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
@@ -158,6 +159,45 @@ TEST(FindScene, SeeksNamesInTheVariablesFoldersFirst) {
     EXPECT_EQ(other, "other") << "a broken file is listed by its name";
 }
 
+/// $LUMISCOPE_ASSETS while it lives.
+class AssetsVariable {
+public:
+    explicit AssetsVariable(const fs::path& folder) : before_(std::getenv("LUMISCOPE_ASSETS") ? std::getenv("LUMISCOPE_ASSETS") : "") {
+        setenv("LUMISCOPE_ASSETS", folder.c_str(), 1);
+    }
+    ~AssetsVariable() { before_.empty() ? unsetenv("LUMISCOPE_ASSETS") : setenv("LUMISCOPE_ASSETS", before_.c_str(), 1); }
+
+private:
+    std::string before_;
+};
+
+TEST(Assets, AreSoughtInTheVariablesFolder) {
+    TemporaryFolder scenes, assets;
+    writeFileAtomically(scenes / "far.json", std::string_view(R"({"version": 1, "title": "Far",
+      "materials": {"m": {"base-color-texture": {"file": "assets:white.png"}}},
+      "assets": {"shape": {"obj": "assets:models/shape.obj"}}, "instances": [{"asset": "shape"}],
+      "environment": {"file": "assets:sky.hdr"}})"));
+    const ScenesVariable scenesVariable(scenes.path().string());
+    const AssetsVariable assetsVariable(assets.path());
+    const auto missing = [] {
+        for (const SceneEntry& entry : listScenes())
+            if (entry.name == "far") return entry.missing;
+        return std::string("not listed");
+    };
+    const auto load = [&] { MessageLog log; return loadScene(scenes / "far.json", log); };
+    EXPECT_NE(missing().find("white.png: no such asset; expected $LUMISCOPE_ASSETS"), std::string::npos) << missing();
+    expectError(ErrorKind::BadInput, load, {"far.json:2:", "white.png", "$LUMISCOPE_ASSETS to name a folder that holds white.png"});
+
+    writePng(assets / "white.png", Image8{{1, 1}, {255, 255, 255, 255}});
+    expectError(ErrorKind::BadInput, load, {"far.json:3:", "asset \"shape\"", "no such asset", "models/shape.obj"});
+    fs::create_directory(assets / "models");
+    writeFileAtomically(assets / "models/shape.obj", std::string_view("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+    expectError(ErrorKind::BadInput, load, {"far.json:4:", "\"environment\"", "no such asset", "sky.hdr"});
+    writeFileAtomically(assets / "sky.hdr", std::string_view(tinyHdr()));
+    EXPECT_EQ(missing(), "");
+    EXPECT_EQ(load()->triangleCount(), 1);
+}
+
 TEST(FindScene, BuiltInScenesComeFirstInTheirOrder) {
     std::vector<std::string> expected;
     for (const char* name : {"cornell", "room", "atrium", "still-life", "parade"})
@@ -170,6 +210,10 @@ TEST(FindScene, BuiltInScenesComeFirstInTheirOrder) {
 
 TEST(LoadScene, EveryBuiltInSceneLoads) {
     for (const SceneEntry& entry : listScenes()) {
+        if (!entry.missing.empty()) {
+            std::printf("left out: %s: %s\n", entry.name.c_str(), entry.missing.c_str());
+            continue;
+        }
         MessageLog log;
         const auto scene = loadScene(entry.path, log);
         EXPECT_GT(scene->triangleCount(), 0) << entry.name;

@@ -1,0 +1,66 @@
+#include "scene/asset_folder.h"
+
+#include <cstdlib>
+#include <optional>
+#include <system_error>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "scene/json_tree.h"
+#include "scene/scene_file.h"
+
+namespace lumi {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view kPrefix = "assets:";
+
+fs::path assetFolder() {
+    if (const char* variable = std::getenv("LUMISCOPE_ASSETS"); variable && *variable) return variable;
+    return fs::path(LUMISCOPE_SOURCE_DIR).parent_path() / "shared" / "assets";
+}
+
+/// Calls found(name) for each text of a JSON value that names an asset, in document order.
+template <class Found>
+void forAssetNames(const JsonValue& value, const Found& found) {
+    if (value.isString() && isAssetName(value.text)) found(value.text);
+    for (const JsonValue& item : value.items) forAssetNames(item, found);
+    for (const JsonMember& member : value.members) forAssetNames(member.value, found);
+}
+
+ErrorText absence(const std::string& name) {
+    const std::string path = name.substr(kPrefix.size());
+    return {"no such asset", (assetFolder() / path).lexically_normal().string(), "$LUMISCOPE_ASSETS to name a folder that holds " + path, ""};
+}
+
+std::optional<fs::path> locate(const std::string& name) {
+    fs::path file = assetFolder() / name.substr(kPrefix.size());
+    std::error_code ignored;
+    if (fs::is_regular_file(file, ignored)) return file;
+    return std::nullopt;
+}
+
+}  // namespace
+
+bool isAssetName(const std::string& name) { return name.starts_with(kPrefix); }
+
+fs::path findAsset(const std::string& name) {
+    std::optional<fs::path> file = locate(name);
+    if (!file) throwBadInput(absence(name));
+    return *std::move(file);
+}
+
+std::string missingAsset(const fs::path& sceneFile) {
+    std::string missing;
+    try {
+        const JsonTree tree = parseJsonTree(readTextFile(sceneFile, kMaxSceneFileBytes), sceneFile.string());
+        forAssetNames(tree.root, [&](const std::string& name) {
+            if (missing.empty() && !locate(name)) missing = Error(ErrorKind::BadInput, absence(name)).what();
+        });
+    } catch (const Error&) {
+        // Opening the file says what is wrong with it.
+    }
+    return missing;
+}
+
+}  // namespace lumi
