@@ -223,10 +223,14 @@ void SignalsObserver::writePixel(int x, int y, const TileSums& tile, size_t loca
     set3(Signal::Indirect, x, y, Vec3((sums.indirectDiffuse + sums.indirectSpecular) * scale));
     if (!albedos_) return;
     // Demodulation, channel by channel; what is hardly reflected stays undivided.
-    Vec3 albedo, specularAlbedo;
+    Vec3 albedo(sums.albedo * scale), specularAlbedo(sums.specularAlbedo * scale);
     for (int c = 0; c < 3; ++c) {
-        albedo[c] = storedAlbedo(static_cast<float>(sums.albedo[c] * scale));
-        specularAlbedo[c] = storedAlbedo(static_cast<float>(sums.specularAlbedo[c] * scale));
+        if (albedo[c] >= 1 && specularAlbedo[c] >= 1) {  // together more than a surface can have: the sky
+            albedo[c] = specularAlbedo[c] = 1;
+            continue;
+        }
+        albedo[c] = storedAlbedo(albedo[c]);
+        specularAlbedo[c] = storedAlbedo(specularAlbedo[c]);
     }
     set3(Signal::Albedo, x, y, albedo);
     set3(Signal::SpecularAlbedo, x, y, specularAlbedo);
