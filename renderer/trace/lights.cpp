@@ -57,48 +57,33 @@ LightTreePoint treePoint(const LightReceiver& r) {
 
 }  // namespace
 
-Lights::Choice Lights::choose(const LightReceiver& receiver, Vec2 pick) const {
-    if (entries_.size() == 1) return {0, 1};
-    if (receiver.sampling == LightSampling::Power) {
-        const uint32_t entry = picks_.sample(pick);
-        return {entry, picks_.probability(entry)};
-    }
-    const float elsewhere = infiniteImportance(receiver);
-    if (finiteCount_ == 0) return chosenInfinite(receiver, pick.x, 1, elsewhere);
-    const LightTreeChoice choice = tree_.pick(treePoint(receiver), elsewhere, pick);
-    if (!choice.elsewhere) return {choice.light, choice.probability};
-    return chosenInfinite(receiver, choice.u, choice.probability, elsewhere);
-}
-
-namespace {
-
-/// One of `count` weights, `elsewhere` their sum, in proportion to them; none: -1.
-int drawnByWeight(const float* weights, uint32_t count, float u, float elsewhere) {
-    int chosen = -1;
-    float rest = u * elsewhere;
-    for (uint32_t i = 0; i < count; ++i) {
-        if (!(weights[i] > 0)) continue;
-        chosen = static_cast<int>(i);
-        if (rest < weights[i]) break;
-        rest -= weights[i];
-    }
-    return chosen;
-}
-
-}  // namespace
-
-/// One of the infinite lights, which have `share` of the choice and the sum `elsewhere` of importances.
-Lights::Choice Lights::chosenInfinite(const LightReceiver& receiver, float u, float share, float elsewhere) const {
+/// One of the infinite lights, which have `share` of the choice and the sum `elsewhere` of importances importanceOf(i).
+template <class Importance>
+Lights::Choice Lights::chosenInfinite(float u, float share, float elsewhere, Importance&& importanceOf) const {
     Choice chosen;
     float rest = u * elsewhere;
     for (uint32_t i = 0; finiteCount_ + i < entries_.size(); ++i) {
-        const float own = infiniteImportance(receiver, i);
+        const float own = importanceOf(i);
         if (!(own > 0)) continue;
         chosen = {finiteCount_ + i, share * own / elsewhere};
         if (rest < own) break;
         rest -= own;
     }
     return chosen;
+}
+
+Lights::Choice Lights::choose(const LightReceiver& receiver, Vec2 pick) const {
+    if (entries_.size() == 1) return {0, 1};
+    if (receiver.sampling == LightSampling::Power) {
+        const uint32_t entry = picks_.sample(pick);
+        return {entry, picks_.probability(entry)};
+    }
+    const auto importanceOf = [&](uint32_t infinite) { return infiniteImportance(receiver, infinite); };
+    const float elsewhere = infiniteImportance(receiver);
+    if (finiteCount_ == 0) return chosenInfinite(pick.x, 1, elsewhere, importanceOf);
+    const LightTreeChoice choice = tree_.pick(treePoint(receiver), elsewhere, pick);
+    if (!choice.elsewhere) return {choice.light, choice.probability};
+    return chosenInfinite(choice.u, choice.probability, elsewhere, importanceOf);
 }
 
 void Lights::choose(std::span<const LightReceiver> receivers, const float* pickX, const float* pickY,
@@ -114,7 +99,7 @@ void Lights::choose(std::span<const LightReceiver> receivers, const float* pickX
         LightTreePoint points[kAtOnce];
         float elsewhere[kAtOnce];
         LightTreeChoice found[kAtOnce];
-        // What the infinite lights weigh is kept for the choice among them, unless there are many.
+        // What the first infinite lights weigh is kept for the choice among them.
         constexpr uint32_t kKept = 4;
         float weights[kAtOnce][kKept];
         const auto infinite = static_cast<uint32_t>(entries_.size()) - finiteCount_;
@@ -132,13 +117,11 @@ void Lights::choose(std::span<const LightReceiver> receivers, const float* pickX
             tree_.pick(points, elsewhere, pickX + first, pickY + first, found, static_cast<int>(size));
             for (size_t i = 0; i < size; ++i) {
                 Choice& choice = choices[first + i];
-                if (!found[i].elsewhere) {
-                    choice = {found[i].light, found[i].probability};
-                } else if (infinite > kKept) {
-                    choice = chosenInfinite(receivers[first + i], found[i].u, found[i].probability, elsewhere[i]);
-                } else if (const int k = drawnByWeight(weights[i], infinite, found[i].u, elsewhere[i]); k >= 0) {
-                    choice = {finiteCount_ + static_cast<uint32_t>(k), found[i].probability * weights[i][k] / elsewhere[i]};
-                }
+                const auto importanceOf = [&](uint32_t k) {
+                    return k < kKept ? weights[i][k] : infiniteImportance(receivers[first + i], k);
+                };
+                choice = found[i].elsewhere ? chosenInfinite(found[i].u, found[i].probability, elsewhere[i], importanceOf)
+                                            : Choice{found[i].light, found[i].probability};
                 prefetch(choice);
             }
         }

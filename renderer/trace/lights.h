@@ -140,7 +140,8 @@ private:
 
     Choice choose(const LightReceiver& receiver, Vec2 pick) const;
     void prefetch(const Choice& choice) const;
-    Choice chosenInfinite(const LightReceiver& receiver, float u, float share, float elsewhere) const;
+    template <class Importance>
+    Choice chosenInfinite(float u, float share, float elsewhere, Importance&& importanceOf) const;
     float infiniteImportance(const LightReceiver& receiver, uint32_t infinite) const;
     float infiniteImportance(const LightReceiver& receiver) const;
 
