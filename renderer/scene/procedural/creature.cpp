@@ -53,7 +53,7 @@ public:
         addFace(mesh, influences);
         addCrest(mesh, influences);
         for (Vec3& p : mesh.positions) p *= length_;
-        bind(mesh, influences);
+        for (const Influences& w : influences) addInfluences(mesh.skin, w);
         ProceduralPart part;
         part.mesh = std::make_shared<const Mesh>(std::move(mesh));
         part.node = 0;
@@ -207,20 +207,6 @@ private:
             Mesh placedPlate;
             append(placedPlate, plate, 0, basis);
             addSkinned(mesh, influences, placedPlate, kBack, crest_, [s](const Vec3&) { return alongSpine(s); });
-        }
-    }
-
-    static void bind(Mesh& mesh, const std::vector<Influences>& influences) {
-        mesh.skin.first.push_back(0);
-        for (const Influences& w : influences) {
-            float sum = 0;
-            for (const float value : w) sum += value;
-            for (size_t j = 0; j < w.size(); ++j)
-                if (w[j] > 0) {
-                    mesh.skin.joint.push_back(static_cast<uint32_t>(j));
-                    mesh.skin.weight.push_back(w[j] / sum);
-                }
-            mesh.skin.first.push_back(static_cast<uint32_t>(mesh.skin.joint.size()));
         }
     }
 

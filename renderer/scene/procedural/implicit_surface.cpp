@@ -9,7 +9,7 @@
 namespace lumi {
 namespace {
 
-/// Minimum that is smooth where the two are nearer than `width` (polynomial).
+/// Minimum that is smooth where the two are nearer than `width`: the quadratic polynomial of [Quilez 2013, "smooth minimum"].
 float smoothMin(float a, float b, float width) {
     if (width <= 0) return std::min(a, b);
     const float h = std::max(width - std::abs(a - b), 0.0f) / width;
@@ -165,6 +165,7 @@ void SoftBody::carveCone(const Vec3& a, const Vec3& b, float radiusA, float radi
 
 float SoftBody::Piece::distance(const Vec3& p) const {
     if (ellipsoid) {
+        // No more than the distance, exact near the surface [Quilez, "distance to an ellipsoid": a bound].
         const float k0 = glm::length((p - a) / b), k1 = glm::length((p - a) / (b * b));
         return k1 > 0 ? k0 * (k0 - 1) / k1 : -std::min({b.x, b.y, b.z});
     }

@@ -30,7 +30,7 @@ private:
 };
 
 /// Where `field` is 0 within `box`, as triangles of about `cell` metres whose vertices lie on the surface and have its
-/// normals (surface nets, then Newton steps along the gradient). Closed if the surface does not reach the box's sides.
+/// normals (surface nets [Gibson 1998], then Newton steps along the gradient). Closed if the surface does not reach the box's sides.
 /// `field` is negative inside, about a distance, and may be asked on any thread.
 Mesh surfaceOf(const std::function<float(const Vec3&)>& field, const Bounds3& box, float cell);
 

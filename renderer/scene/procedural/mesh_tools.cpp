@@ -155,4 +155,16 @@ void tidy(Mesh& mesh) {
     for (UVec3& v : mesh.triangles) v = UVec3(newIndex[v.x], newIndex[v.y], newIndex[v.z]);
 }
 
+void addInfluences(SkinWeights& skin, std::span<const float> influences) {
+    if (skin.first.empty()) skin.first.push_back(0);
+    float sum = 0;
+    for (const float value : influences) sum += value;
+    for (size_t j = 0; j < influences.size(); ++j) {
+        if (!(influences[j] > 0)) continue;
+        skin.joint.push_back(static_cast<uint32_t>(j));
+        skin.weight.push_back(influences[j] / sum);
+    }
+    skin.first.push_back(static_cast<uint32_t>(skin.joint.size()));
+}
+
 }  // namespace lumi

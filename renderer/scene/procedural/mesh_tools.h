@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "math/hash.h"
@@ -83,6 +84,9 @@ Mesh lathe(const Profile& profile, int segments);
 /// A tube along `path` with the radius given at each point, on frames that do not twist; round caps if `capped`
 /// (closed then).
 Mesh tube(const std::vector<Vec3>& path, const std::vector<float>& radii, int segments, bool capped = true);
+
+/// Adds a vertex that joint j moves in proportion to influences[j]; those that are 0 take no room.
+void addInfluences(SkinWeights& skin, std::span<const float> influences);
 
 /// `count` points of a Catmull-Rom curve through `points`.
 std::vector<Vec3> curveThrough(const std::vector<Vec3>& points, int count);

@@ -107,7 +107,7 @@ public:
         addBreath(mesh);
         for (Vec3& p : mesh.positions) p *= scale();
         for (Vec3& p : mesh.morphTargets[0].positions) p *= scale();
-        bind(mesh, influences);
+        for (const Influences& w : influences) addInfluences(mesh.skin, w);
         addSkeleton(result);
         addLoop(result);
         ProceduralPart part;
@@ -190,17 +190,6 @@ private:
         computeNormals(swollen);
         for (size_t i = 0; i < mesh.positions.size(); ++i) breath.normals.push_back(swollen.normals[i] - rest.normals[i]);
         mesh.morphTargets.push_back(std::move(breath));
-    }
-
-    static void bind(Mesh& mesh, const std::vector<Influences>& influences) {
-        mesh.skin.first.push_back(0);
-        for (const Influences& w : influences) {
-            float sum = 0;
-            for (const float value : w) sum += value;
-            for (size_t j = 0; j < w.size(); ++j)
-                if (w[j] > 0) mesh.skin.joint.push_back(static_cast<uint32_t>(j)), mesh.skin.weight.push_back(w[j] / sum);
-            mesh.skin.first.push_back(static_cast<uint32_t>(mesh.skin.joint.size()));
-        }
     }
 
     void addSkeleton(ProceduralResult& result) const {
