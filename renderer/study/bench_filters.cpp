@@ -100,17 +100,14 @@ private:
     FrameNumber frame_ = 0;
 };
 
-ModuleBench& FilterBench::frame(Extent2 extent) {
+ModuleBench& FilterBench::frame() {
     if (!scene_) scene_ = loadBenchScene(*benchSceneFile("atrium"), log_, stop_);
-    if (!frame_ || frame_->signals().extent() != extent) {
-        frame_.reset();
-        frame_ = std::make_unique<ModuleBench>(scene_, extent, stop_);
-    }
+    if (!frame_) frame_ = std::make_unique<ModuleBench>(scene_, kFilterExtent, stop_);
     return *frame_;
 }
 
 void FilterBench::run(const std::string& id, const BenchOutput& output) {
-    ModuleBench& bench = frame(kFilterExtent);
+    ModuleBench& bench = frame();
     const MemoryPeak peak;
     WarmModule module(bench, id);
     const std::optional<uint64_t> held = peak.bytes();

@@ -32,7 +32,7 @@ public:
     void runSizes(const std::string& module, const std::string& name, const BenchOutput& output);
 
 private:
-    ModuleBench& frame(Extent2 extent);
+    ModuleBench& frame();
 
     MessageLog& log_;
     std::stop_token stop_;

@@ -79,6 +79,7 @@ float FrameSampling::timeOf(int x, int y, uint64_t sample) const {
 }
 
 Vec2 frameJitter(uint64_t sampleIndex, uint32_t seed) {
+    // 6^6 indices: six digits of base 2 and base 3 each come back after so many.
     const uint64_t index = (seed == 0 ? 0 : mixBits(seed) % 46656) + sampleIndex % 16 + 1;
     return {radicalInverse(2, index) - 0.5f, radicalInverse(3, index) - 0.5f};
 }

@@ -145,6 +145,7 @@ bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_t
     if (extra.empty() && isGeometryOnly(signals.available())) path.maxDepth = 0;  // no light is asked for
     const Integrator integrator(impl_->scene, path, sampling.seed, observers);
 
+    static_assert(SignalsObserver::kTile * SignalsObserver::kTile <= PathBatch::kMost && SignalsObserver::kTile <= kMostInStartRow);
     const std::vector<int> tiles = mortonOrder(frame.tileColumns(), frame.tileRows());
     std::atomic<size_t> done{0};
     parallelFor(
