@@ -119,7 +119,7 @@ void drawPaneOverlay(AppState& state, int pane, const ImRect& rect, const ImRect
     const bool reference = state.showsReference();
     if (!map && !reference) {
         drawMotionArrows(state, pane, rect, visible);
-        drawPixelValues(state, pane, rect, visible);
+        if (!drawSubpixelGrid(state, pane, rect, visible)) drawPixelValues(state, pane, rect, visible);
     }
     if (state.hovered && state.view.zoom() >= px(6))
         drawPixelFrame(state, *state.hovered, rect, visible, IM_COL32(255, 255, 255, 150), false);

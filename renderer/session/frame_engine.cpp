@@ -232,6 +232,8 @@ bool FrameEngine::runModules(const FrameRequest& request, const Completed& next,
         frame.runMs[name] = run.elapsedMs();
         frame.runRays[name] = difference(tracer_.counts(), before);
         frame.readsSignals[name] = !current.module->reads().empty();
+        frame.moduleBytes[name] = current.module->byteCount();
+        advise(name, *current.module);
         if (current.firstFrame < 0) current.firstFrame = request.frame;
         current.lastFrame = request.frame;
         current.parameters = next.document.list(name + ".");
@@ -244,6 +246,14 @@ bool FrameEngine::runModules(const FrameRequest& request, const Completed& next,
                 frame.taps[name + "-" + tap] = std::make_shared<Image>(image);
     }
     return true;
+}
+
+/// What the method says of its parameters, once as long as it says the same.
+void FrameEngine::advise(const std::string& name, const Module& module) {
+    const ModuleEntry& entry = findModule(name);
+    const std::string advice = entry.advice ? entry.advice(module) : "";
+    if (!advice.empty() && advice_[name] != advice) log_.warning(name + ": " + advice);
+    advice_[name] = advice;
 }
 
 bool FrameEngine::runModule(const std::string& name, const FrameContext& context, Image& out, FrameOutput& frame) {

@@ -42,6 +42,7 @@ struct FrameOutput {
     std::shared_ptr<const Signals> signals;
     std::map<std::string, std::shared_ptr<const Image>> results;  ///< by instance
     std::map<std::string, std::shared_ptr<const Image>> taps;     ///< "<instance>-<tap>"
+    std::map<std::string, size_t> moduleBytes;                    ///< by instance
     std::map<std::string, Convergence> convergence;               ///< by instance
     std::map<std::string, Lineage> lineages;                      ///< by instance, of the pixel asked about
     std::vector<std::pair<std::string, double>> stagesMs;
@@ -120,9 +121,11 @@ private:
                       StageTimer& timer, std::stop_token stop);
     bool runModules(const FrameRequest& request, const Completed& next, const CameraPose& previousCamera, FrameOutput& frame,
                     StageTimer& timer, std::stop_token stop);
+    void advise(const std::string& name, const Module& module);
     bool runModule(const std::string& name, const FrameContext& context, Image& out, FrameOutput& frame);
 
     MessageLog& log_;
+    std::map<std::string, std::string> advice_;  ///< last given, by instance
     OnModuleError onError_;
     Tracer tracer_;
     std::shared_ptr<const PosedScene> bound_;

@@ -13,6 +13,19 @@ std::string paneLabel(const FrameOutput& frame, const ViewSettings& view, bool c
     std::string label = view.module;
     if (view.buffer != "image") label += " " + view.buffer;
     const auto convergence = frame.convergence.find(view.module);
+    const auto reads = frame.readsSignals.find(view.module);
+    const bool ownRays = reads != frame.readsSignals.end() && !reads->second && signalByName(view.buffer) == Signal::Count;
+    if (ownRays) {
+        // A method that places its own rays has neither the frame's samples nor as many as other methods.
+        if (convergence != frame.convergence.end() && convergence->second.samples > 1)
+            return label + fmt::format(", {} paths a sample", convergence->second.samples);
+        const auto rays = frame.runRays.find(view.module);
+        const auto bytes = frame.moduleBytes.find(view.module);
+        if (rays == frame.runRays.end() || bytes == frame.moduleBytes.end()) return label;
+        const auto pixels = static_cast<double>(std::max<int64_t>(frame.camera.extent.area(), 1));
+        return label + fmt::format(", {:.3g} camera rays/px of its own, {:.0f} bytes/px", static_cast<double>(rays->second.cameraRays) / pixels,
+                                   static_cast<double>(bytes->second) / pixels);
+    }
     uint64_t samples = static_cast<uint64_t>(frame.signals->samplesPerPixel());
     if (convergence != frame.convergence.end() && convergence->second.samples > 0) samples = convergence->second.samples;
     return label + fmt::format(", {} spp", samples) + (compared ? ", equal samples" : "");

@@ -88,6 +88,8 @@ std::map<std::string, double> frameStatistics(const Study& study, const StudyEnt
             values[statistic.name] = against(statistic.metric, statistic.referenceSpp);
         } else if (!statistic.rays.empty()) {
             values[statistic.name] = raysPerPixel(frame.runRays.at(instance), statistic.rays, *frame.results.at(instance));
+        } else if (statistic.memory) {
+            values[statistic.name] = static_cast<double>(frame.moduleBytes.at(instance)) / static_cast<double>(frame.results.at(instance)->extent().area());
         } else if (values.contains(statistic.over) && values.contains(statistic.under)) {
             values[statistic.name] = values[statistic.over] / values[statistic.under];
         }

@@ -81,7 +81,8 @@ struct StudyPair {
 };
 
 /// A number of every measured frame beside the metrics. Which of its parts are there says what it is of: a buffer of the
-/// method, a metric against another reference, the rays that the method traced itself, or the ratio of two others.
+/// method, a metric against another reference, the rays that the method traced itself, the bytes that it holds, or the ratio
+/// of two others.
 struct StudyStatistic {
     enum class Of { Mean, Least, Most, Percentile, ShareBelow, ShareAtLeast };
     std::string name, title, definition;
@@ -93,6 +94,7 @@ struct StudyStatistic {
     std::string metric;   ///< of the catalogue, against a reference of `referenceSpp`
     int referenceSpp = 0;
     std::string rays;     ///< camera, bounce, shadow or all: a pixel
+    bool memory = false;      ///< bytes a pixel
     std::string over, under;  ///< statistics before this one: `over` divided by `under`
 };
 

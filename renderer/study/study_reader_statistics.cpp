@@ -12,7 +12,7 @@
 namespace lumi {
 namespace {
 
-const char* const kKinds[] = {"tap", "metric", "rays", "over"};
+const char* const kKinds[] = {"tap", "metric", "rays", "memory", "over"};
 
 bool isTaken(const std::string& name, const std::vector<StudyStatistic>& earlier) {
     const auto& metrics = metricCatalog();
@@ -66,6 +66,7 @@ std::string definitionOf(const StudyStatistic& statistic) {
         return fmt::format("{} against a reference of {} samples a pixel, its own error included.", findMetric(statistic.metric).title, statistic.referenceSpp);
     if (!statistic.rays.empty())
         return fmt::format("Rays a pixel that the method traced itself{}.", statistic.rays == "all" ? "" : ", of the kind " + statistic.rays);
+    if (statistic.memory) return "Bytes a pixel that the method holds between frames and to work on them.";
     return fmt::format("{} divided by {}.", statistic.over, statistic.under);
 }
 
@@ -80,7 +81,7 @@ StudyStatistic readStatistic(const JsonTree& tree, const JsonValue& item, const 
     statistic.higherIsBetter = reader.toggle("higher-is-better").value_or(false);
     int kinds = 0;
     for (const char* kind : kKinds) kinds += reader.find(kind) != nullptr;
-    if (kinds != 1) refuseValue(tree, item, "statistic", "one of \"tap\", \"metric\", \"rays\" and \"over\"");
+    if (kinds != 1) refuseValue(tree, item, "statistic", "one of \"tap\", \"metric\", \"rays\", \"memory\" and \"over\"");
     if (const JsonValue* tap = reader.find("tap")) {
         statistic.tap = readText(tree, *tap, "tap");
         statistic.channel = reader.text("channel").value_or("");
@@ -95,6 +96,10 @@ StudyStatistic readStatistic(const JsonTree& tree, const JsonValue& item, const 
         if (statistic.referenceSpp % 32) refuseValue(tree, spp, "reference-spp", "a multiple of 32: two halves of whole blocks of 16");
     }
     if (const JsonValue* rays = reader.find("rays")) statistic.rays = readOneOf(tree, *rays, "rays", {"camera", "bounce", "shadow", "all"});
+    if (const JsonValue* memory = reader.find("memory")) {
+        statistic.memory = reader.toggle("memory").value_or(false);
+        if (!statistic.memory) refuseValue(tree, *memory, "memory", "true");
+    }
     if (const JsonValue* over = reader.find("over")) {
         std::vector<std::string> names;
         for (const StudyStatistic& one : earlier) names.push_back(one.name);

@@ -134,11 +134,12 @@ Json statisticsSchema() {
                        {"metric", oneOfNames(metricIds(false), "Against another reference.")},
                        {"reference-spp", {{"type", "integer"}, {"minimum", 32}, {"maximum", 1 << 20}, {"multipleOf", 32}}},
                        {"rays", oneOfNames({"camera", "bounce", "shadow", "all"}, "Rays a pixel that the method traced itself.")},
+                       {"memory", {{"description", "Bytes a pixel that the method holds."}, {"const", true}}},
                        {"over", text("A statistic before this one, divided by")},
                        {"under", text("another.")}},
                       "A number of every measured frame.", {"name"});
     const auto needs = [](const char* kind, const char* other) { return Json{{"required", other ? Json{kind, other} : Json{kind}}}; };
-    one["oneOf"] = {needs("tap", "of"), needs("metric", "reference-spp"), needs("rays", nullptr), needs("over", "under")};
+    one["oneOf"] = {needs("tap", "of"), needs("metric", "reference-spp"), needs("rays", nullptr), needs("memory", nullptr), needs("over", "under")};
     return listOf(std::move(one), "Numbers beside the metrics: of buffers, of rays, of other references.", 0);
 }
 

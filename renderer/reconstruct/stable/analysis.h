@@ -10,7 +10,7 @@ namespace lumi {
 /// How many samples there shall be [DalCorso17, sec. 4.2].
 struct DensitySettings {
     float density = 1;    ///< d_target, visible samples a pixel
-    float tolerance = 0.5f;  ///< d_tolerance
+    float tolerance = 0.75f;  ///< d_tolerance
     float jitter = 0.5f;  ///< how far new samples lie off the middle of their stratum
 
     void describe(ParameterVisitor& v);

@@ -17,9 +17,4 @@ void SpareBatches::giveBack(std::unique_ptr<SampleBatch> batch) {
     spare_.push_back(std::move(batch));
 }
 
-size_t SpareBatches::bytes() const {
-    std::lock_guard lock(mutex_);
-    return spare_.size() * sizeof(SampleBatch);
-}
-
 }  // namespace lumi

@@ -34,10 +34,9 @@ class SpareBatches {
 public:
     std::unique_ptr<SampleBatch> take();
     void giveBack(std::unique_ptr<SampleBatch> batch);
-    size_t bytes() const;
 
 private:
-    mutable std::mutex mutex_;
+    std::mutex mutex_;
     std::vector<std::unique_ptr<SampleBatch>> spare_;
 };
 

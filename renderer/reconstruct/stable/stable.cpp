@@ -119,6 +119,11 @@ bool StableModule::reconstruct(const FrameContext& context, const SampleSet& sam
     return true;
 }
 
+std::string StableModule::advice() const {
+    if (density_.tolerance >= 0.5f) return "";
+    return "a density tolerance below 0.5 never settles: neighbouring pixels undo each other's changes, and samples do not live long";
+}
+
 const Image& StableModule::tap(const std::string& name) const {
     const Image* found = taps_.find(name);
     return found ? *found : Module::tap(name);
@@ -130,7 +135,8 @@ Convergence StableModule::convergence() const {
 }
 
 size_t StableModule::byteCount() const {
-    return history_.byteCount([](const Kept& kept) { return kept.samples.bytes(); }) + frame_.bytes() + spare_.bytes() + weights_.bytes() + motion_.bytes() +
+    // The threads' scratch is not part of it: as in the tracer, it is small, and depends on their number.
+    return history_.byteCount([](const Kept& kept) { return kept.samples.bytes(); }) + frame_.bytes() + weights_.bytes() + motion_.bytes() +
            localDensity_.bytes() + temporal_.bytes() + taps_.bytes();
 }
 

@@ -60,11 +60,28 @@ float lanesOf(const SampleFrame& frame, const SampleSet& samples, VerificationSe
 void drawChanges(const SampleFrame& frame, Extent2 extent, Image* out) {
     if (!out) return;
     out->reset(extent, 3);
-    for (int64_t pixel = 0; pixel < extent.area(); ++pixel) {
-        const PixelChange& change = frame.changes[static_cast<size_t>(pixel)];
-        out->plane(0).data[pixel] = static_cast<float>(std::popcount(change.removed));
-        out->plane(1).data[pixel] = static_cast<float>(std::popcount(change.added));
-    }
+    parallelRanges(extent.area(), kPixels, [&](int64_t begin, int64_t end) {
+        for (int64_t pixel = begin; pixel < end; ++pixel) {
+            const PixelChange& change = frame.changes[static_cast<size_t>(pixel)];
+            out->plane(0).data[pixel] = static_cast<float>(subpixel::count(change.removed));
+            out->plane(1).data[pixel] = static_cast<float>(subpixel::count(change.added));
+        }
+    });
+}
+
+/// The words as colours, and their two halves.
+void drawBitmasks(const SampleSet& samples, Image* out) {
+    if (!out) return;
+    out->reset(samples.extent, 5);
+    parallelRanges(samples.extent.area(), kPixels, [&](int64_t begin, int64_t end) {
+        for (int64_t pixel = begin; pixel < end; ++pixel) {
+            const uint32_t word = samples.words[static_cast<size_t>(pixel)];
+            const uint32_t visible = subpixel::count(subpixel::visible(word)), occluded = subpixel::count(subpixel::occluded(word));
+            const float values[] = {0.25f * static_cast<float>(occluded), 0, 0.25f * static_cast<float>(visible),
+                                    static_cast<float>(subpixel::occupied(word)), static_cast<float>(subpixel::occluded(word))};
+            for (int c = 0; c < 5; ++c) out->plane(c).data[pixel] = values[c];
+        }
+    });
 }
 
 }  // namespace
@@ -72,6 +89,7 @@ void drawChanges(const SampleFrame& frame, Extent2 extent, Image* out) {
 std::vector<Tap> stableTaps() {
     return {
         {.name = "subpixels", .channels = "RGB", .colourMap = "none", .help = "The 4x4 sub-pixels of the pixels around the one under the pointer, or around the middle, each drawn as a pixel: visible samples blue, occluded red (fig. 6)"},
+        {.name = "bitmasks", .channels = "RGBXY", .colourMap = "none", .help = "Visible samples as blue, occluded ones as red, four of them as full colour; zoomed in, the window shows each pixel's 4x4 sub-pixels (fig. 6). X and Y are the occupancy and the occlusion bits"},
         {.name = "occupancy", .channels = "Y", .rangeHigh = 65535, .help = "The 16 occupancy bits as a number; bit b is sub-pixel b, in rows from the top left"},
         {.name = "occlusion", .channels = "Y", .rangeHigh = 65535, .help = "The 16 occlusion bits as a number"},
         {.name = "sampleCount", .channels = "Y", .unit = "samples", .rangeHigh = 4, .help = "Visible samples in the pixel"},
@@ -108,6 +126,7 @@ void StableModule::keepTaps(const FrameContext& context, const SampleSet& sample
     if (context.wantedTaps.empty()) return;
     if (Image* out = taps_.target("subpixels"))
         drawSubpixels(samples, context.inspected.value_or(Pixel{extent_.width / 2, extent_.height / 2}), *out);
+    drawBitmasks(samples, taps_.target("bitmasks"));
     fill(taps_.target("occupancy"), extent_, [&](size_t p) { return static_cast<float>(subpixel::occupied(samples.words[p])); });
     fill(taps_.target("occlusion"), extent_, [&](size_t p) { return static_cast<float>(subpixel::occluded(samples.words[p])); });
     fill(taps_.target("sampleCount"), extent_, [&](size_t p) { return static_cast<float>(std::popcount(subpixel::visible(samples.words[p]))); });
