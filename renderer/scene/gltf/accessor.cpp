@@ -47,6 +47,7 @@ void convertRun(const Elements& from, float scale, float lowest, To* out, size_t
 /// Writes all elements as To. Normalised signed integers map both of their lowest codes to -1, as glTF asks.
 template <class To>
 void convert(const Elements& from, To* out) {
+    if (from.count == 0) return;
     const size_t n = static_cast<size_t>(from.components);
     const float none = -kInfinity, minusOne = -1;
     const auto scale = [&](float largest) { return from.normalized ? 1 / largest : 1.0f; };

@@ -71,6 +71,17 @@ TEST(GltfAccessor, SparseElementsReplaceOthers) {
     EXPECT_EQ(meshOf(scene).positions[1], Vec3(1, 0, 0));
 }
 
+TEST(GltfAccessor, NoSparseElementReplacesNone) {
+    GltfBuilder file;
+    file.triangle();
+    const std::vector<float> values{5, 6, 7};
+    const int view = file.view(values.data(), 12);
+    file.json["accessors"][0]["sparse"] = {{"count", 0},
+                                           {"indices", {{"bufferView", view}, {"componentType", 5121}}},
+                                           {"values", {{"bufferView", view}}}};
+    EXPECT_EQ(meshOf(file.load()).positions[1], Vec3(1, 0, 0));
+}
+
 TEST(GltfAccessor, SparseOverNothingIsZero) {
     GltfBuilder file;
     file.triangle();
