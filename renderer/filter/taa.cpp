@@ -18,7 +18,7 @@ TaaRow rowOf(const TaaMotion& motion, const TaaSettings& settings, const Image& 
         row.previous[c] = previous ? previous->plane(c).data : nullptr;
     }
     for (int c = 0; c < 2; ++c) row.motion[c] = motion.motion.plane(c).data;
-    row.inverseDepth = motion.nearness.data();
+    row.nearness = motion.nearness.data();
     row.alpha = settings.alpha;
     row.gamma = settings.gamma;
     row.clip = settings.clip;

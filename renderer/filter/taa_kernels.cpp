@@ -75,7 +75,7 @@ void findPoints(const TaaRow& row, const Rows& rows, const Range& range, Block& 
     const int32_t lines[3] = {static_cast<int32_t>(rows.above), static_cast<int32_t>(rows.here), static_cast<int32_t>(rows.below)};
     const int32_t sides[3] = {range.left, 0, range.right};
     const int32_t here = lines[1] + range.first;
-    const float* __restrict z = row.inverseDepth + here;
+    const float* __restrict z = row.nearness + here;
     int32_t offset[9];
     for (int n = 0; n < 9; ++n) offset[n] = lines[n / 3] - lines[1] + sides[n % 3];
     for (int k = 0; k < range.count; ++k) {

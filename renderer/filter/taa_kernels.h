@@ -8,7 +8,7 @@ struct TaaRow {
     int width = 0, height = 0, y = 0;
     const float* compressed[3];
     const float* previous[3] = {nullptr, nullptr, nullptr};  ///< null: no history
-    const float* inverseDepth = nullptr;
+    const float* nearness = nullptr;  ///< plane, greater where what is seen is nearer (filter/taa.h)
     const float* motion[2];
     float alpha = 0, gamma = 0;
     bool clip = false, catmullRom = false;
