@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "base/parallel.h"
+#include "reconstruct/stable/reproject_samples.h"
 #include "reconstruct/stable/stable.h"
 #include "support/module_harness.h"
 #include "support/transport_scene.h"
@@ -266,6 +267,54 @@ TEST(StablePromises, DensityStaysWhileTheCameraComesNearer) {
             }
         }
     }
+}
+
+// All samples of a dense screen land in a few pixels as the camera jumps back: 16 at most stay in each, and the analysis thins
+// them out at once.
+TEST(StablePromises, APileOfSamplesLeavesSixteenAPixel) {
+    const Extent2 extent{64, 48};
+    Tracer tracer;
+    const auto posed = sceneOf(1);
+    tracer.bind(posed);
+    Player player(extent);
+    StableModule module;
+    module.resize(extent);
+    setParameter([&](ParameterVisitor& v) { module.describe(v); }, "density", 8.0f);
+    ASSERT_EQ(player.run(module, 0, posed, view(), view(), {}), RunResult::Completed);
+    const SampleSet dense = module.samples();
+    ASSERT_GT(dense.size(), 7u * 64 * 48);
+    const CameraPose far = poseCamera(lookFrom(Vec3(0, 30, 80), Vec3(0, 0.6f, 0)), extent);
+    const Signals signals;
+    const TapSet wanted;
+    StageTimer timer;
+    FrameSampling sampling;
+    ReprojectedSamples piled;
+    ASSERT_TRUE(reprojectSamples({1, signals, *posed, far, poseCamera(view(), extent), {.camera = true}, wanted, tracer, sampling, timer, {}, {}}, dense, piled));
+    std::map<size_t, int> landed;  // what the words cannot tell: how many came
+    const ScreenPlaces screen(far);
+    for (const SampleLocation& location : dense.locations) {
+        Vec2 place;
+        float depth = 0;
+        if (location.isNew() || !screen.find(location, placeInWorld(tracer, location), place, depth)) continue;
+        ++landed[static_cast<size_t>(place.y) * 64 + static_cast<size_t>(place.x)];
+    }
+    int most = 0;
+    for (const auto& [pixel, count] : landed) {
+        most = std::max(most, count);
+        const auto next = pixel + 1 < piled.first.size() ? piled.first[pixel + 1] : static_cast<uint32_t>(piled.sources.size());
+        const int kept = std::popcount(subpixel::occupied(piled.words[pixel]));
+        EXPECT_LE(kept, 16);
+        EXPECT_LE(kept, count);
+        EXPECT_GE(static_cast<int>(next - piled.first[pixel]), kept);
+    }
+    EXPECT_GT(most, 100);
+    setParameter([&](ParameterVisitor& v) { module.describe(v); }, "density", 1.0f);
+    const Camera back = lookFrom(Vec3(0, 30, 80), Vec3(0, 0.6f, 0));
+    for (FrameNumber frame = 1; frame < 4; ++frame)
+        ASSERT_EQ(player.run(module, frame, posed, back, frame == 1 ? view() : back, {.camera = true}), RunResult::Completed);
+    uint32_t crowd = 0;
+    for (size_t p = 0; p < module.samples().words.size(); ++p) crowd = std::max(crowd, module.samples().first[p + 1] - module.samples().first[p]);
+    EXPECT_LE(crowd, 8u);
 }
 
 // Where light has changed shortly before everything stands still, none of then stays in the mean.
