@@ -30,7 +30,10 @@ public:
     void keep(const std::string& name, const Image& image) {
         if (wants(name)) pending_[name] = image;
     }
-    void commit() { shown_.swap(pending_); }
+    void commit() {
+        shown_.swap(pending_);
+        pending_.clear();
+    }
     void clear() {
         pending_.clear();
         shown_.clear();

@@ -231,7 +231,7 @@ bool FrameEngine::runModules(const FrameRequest& request, const Completed& next,
         if (!runModule(name, context, *out, frame)) return false;
         frame.runMs[name] = run.elapsedMs();
         frame.runRays[name] = difference(tracer_.counts(), before);
-        frame.readsSignals[name] = !current.module->reads().empty();
+        frame.readsSignals[name] = current.failed || !current.module->reads().empty();  // what failed shows the noisy frame
         frame.moduleBytes[name] = current.module->byteCount();
         advise(name, *current.module);
         if (current.firstFrame < 0) current.firstFrame = request.frame;

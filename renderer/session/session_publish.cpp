@@ -9,13 +9,18 @@
 namespace lumi {
 namespace {
 
-std::string paneLabel(const FrameOutput& frame, const ViewSettings& view, bool compared) {
+/// Does the view show what a method that places its own rays made of them?
+bool showsOwnRays(const FrameOutput& frame, const ViewSettings& view) {
+    const auto reads = frame.readsSignals.find(view.module);
+    return reads != frame.readsSignals.end() && !reads->second && signalByName(view.buffer) == Signal::Count;
+}
+
+/// `equal`: all panes show what is made of the same samples.
+std::string paneLabel(const FrameOutput& frame, const ViewSettings& view, bool equal) {
     std::string label = view.module;
     if (view.buffer != "image") label += " " + view.buffer;
     const auto convergence = frame.convergence.find(view.module);
-    const auto reads = frame.readsSignals.find(view.module);
-    const bool ownRays = reads != frame.readsSignals.end() && !reads->second && signalByName(view.buffer) == Signal::Count;
-    if (ownRays) {
+    if (showsOwnRays(frame, view)) {
         // A method that places its own rays has neither the frame's samples nor as many as other methods.
         if (convergence != frame.convergence.end() && convergence->second.samples > 1)
             return label + fmt::format(", {} paths a sample", convergence->second.samples);
@@ -28,7 +33,7 @@ std::string paneLabel(const FrameOutput& frame, const ViewSettings& view, bool c
     }
     uint64_t samples = static_cast<uint64_t>(frame.signals->samplesPerPixel());
     if (convergence != frame.convergence.end() && convergence->second.samples > 0) samples = convergence->second.samples;
-    return label + fmt::format(", {} spp", samples) + (compared ? ", equal samples" : "");
+    return label + fmt::format(", {} spp", samples) + (equal ? ", equal samples" : "");
 }
 
 /// The picture with each pixel as many times as it takes to fill `extent`.
@@ -83,12 +88,14 @@ void Session::Impl::publish() {
     next->taps = shown.taps;
     next->lineages = shown.lineages;
     const int count = shownDocument->layout() == Layout::Single ? 1 : kViewCount;
+    bool equal = count > 1;
+    for (int i = 0; i < count; ++i) equal &= !showsOwnRays(shown, shownDocument->view(i));
     for (int i = 0; i < count; ++i) {
         const ViewSettings& view = shownDocument->view(i);
         PaneSnapshot& pane = next->panes.emplace_back();
         pane.module = view.module;
         pane.buffer = view.buffer;
-        pane.label = paneLabel(shown, view, count > 1);
+        pane.label = paneLabel(shown, view, equal);
         pane.pixels = drawView(shown, view, pane.info);
     }
     for (const auto& [name, convergence] : shown.convergence) {

@@ -66,7 +66,7 @@ std::string definitionOf(const StudyStatistic& statistic) {
         return fmt::format("{} against a reference of {} samples a pixel, its own error included.", findMetric(statistic.metric).title, statistic.referenceSpp);
     if (!statistic.rays.empty())
         return fmt::format("Rays a pixel that the method traced itself{}.", statistic.rays == "all" ? "" : ", of the kind " + statistic.rays);
-    if (statistic.memory) return "Bytes a pixel that the method holds between frames and to work on them.";
+    if (statistic.memory) return "Bytes a pixel that the method holds between frames and to work on them, without threads' scratch.";
     return fmt::format("{} divided by {}.", statistic.over, statistic.under);
 }
 

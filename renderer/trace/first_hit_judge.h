@@ -8,7 +8,7 @@ namespace lumi {
 
 /// Decides what the first rays of paths have found, between finding and shading it: caches of surface points verify
 /// theirs that way without another pass. It is the first of the observers of Tracer::tracePaths(), and may have others
-/// after it.
+/// after it. Its functions are called for a batch of at most PathBatch::kMost starts, on several threads at a time.
 class FirstHitJudge : public PathObserver {
 public:
     ObserverNeeds needs() const override { return {0, 0, 0, 0, false}; }

@@ -83,6 +83,7 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
         path.slot = start.slot, path.sample = start.key.sample;
         batch.active[i] = i;
     }
+    assert(!judge_ || (firstPoints.empty() && firstHits.empty()));
     for (int depth = 0; !batch.active.empty(); ++depth) {
         if (stop.stop_requested()) return false;
         const bool given = depth == 0 && !firstPoints.empty();

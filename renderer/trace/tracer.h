@@ -72,7 +72,7 @@ public:
                 std::span<PathObserver* const> extra = {});
 
     /// Traces whole paths from given rays. `radiance` (may be empty) receives one value a start. Observers see every
-    /// vertex. Starts are cut into batches of a fixed size in order; equal slots must be adjacent.
+    /// vertex; the first may be a FirstHitJudge (here alone). Starts are cut into batches of a fixed size in order; equal slots must be adjacent.
     bool tracePaths(std::span<const PathStart> starts, const PathSettings& settings, uint32_t seed,
                     std::span<Vec3> radiance, std::span<PathObserver* const> observers, std::stop_token stop = {});
 

@@ -177,7 +177,7 @@ TEST(FirstHitJudge, ChangesOnlyWhatItDecides) {
         starts.push_back(cameraStart(poseCamera(view(), extent), Vec2(p % 40, p / 40) + 0.3f, Vec2(0.5f), 0));
         starts.back().key = {p, 7, 3}, starts.back().slot = p;
     }
-    std::vector<Vec3> plain(starts.size()), judged(starts.size());
+    std::vector<Vec3> plain(starts.size()), judged(starts.size(), Vec3(std::nanf("")));
     ASSERT_TRUE(tracer.tracePaths(starts, plainPaths(2), 0, plain, {}));
     const uint64_t rays = tracer.counts().cameraRays;
     LenientJudge judge;
@@ -186,6 +186,42 @@ TEST(FirstHitJudge, ChangesOnlyWhatItDecides) {
     EXPECT_EQ(tracer.counts().cameraRays, 2 * rays);
     EXPECT_GT(judge.met, 500);
     for (uint32_t p = 0; p < 1000; ++p) EXPECT_EQ(judged[p], p % 3 != 0 ? plain[p] : Vec3(0)) << p;
+}
+
+/// Puts one hit in the place of all others.
+class OneHitJudge : public FirstHitJudge {
+public:
+    explicit OneHitJudge(const Hit& hit) : hit_(hit) {}
+    void nameRays(std::span<const PathStart>, std::span<uint32_t> ids) const override { std::fill(ids.begin(), ids.end(), 1u); }
+    void judge(std::span<const PathStart>, std::span<Hit> hits, std::span<uint8_t>) override { std::fill(hits.begin(), hits.end(), hit_); }
+
+private:
+    Hit hit_;
+};
+
+// Paths go on from what the judge puts there, as if it was known before; of rays that do not fly none is counted.
+TEST(FirstHitJudge, PathsGoOnFromWhatItPutsThere) {
+    const Extent2 extent{40, 30};
+    Tracer tracer;
+    tracer.bind(sceneOf(1));
+    const PathStart middle = cameraStart(poseCamera(view(), extent), Vec2(20, 20), Vec2(0.5f), 0);
+    Hit hit;
+    tracer.closestHits({&middle.ray, 1}, {&hit, 1});
+    ASSERT_TRUE(hit.valid());
+    std::vector<PathStart> starts(300, middle);
+    for (uint32_t i = 0; i < starts.size(); ++i) {
+        starts[i].key = {i, 2, 1}, starts[i].slot = i;
+        if (i % 2 == 0) starts[i].ray.tmin = 1, starts[i].ray.tmax = 0;
+    }
+    std::vector<Vec3> judged(starts.size()), known(starts.size());
+    OneHitJudge judge(hit);
+    PathObserver* const observers[] = {&judge};
+    tracer.resetCounts();
+    ASSERT_TRUE(tracer.tracePaths(starts, plainPaths(2), 0, judged, observers));
+    EXPECT_EQ(tracer.counts().cameraRays, starts.size() / 2);
+    ASSERT_TRUE(tracer.continuePaths(starts, std::vector<Hit>(starts.size(), hit), plainPaths(2), 0, known, {}));
+    EXPECT_EQ(judged, known);
+    EXPECT_GT(std::count_if(judged.begin(), judged.end(), [](const Vec3& light) { return !isBlack(light); }), 100);
 }
 
 int countVisible(const SampleSet& samples) {
@@ -245,8 +281,8 @@ TEST(StablePromises, BlendedSurfacesKeepTheirDraws) {
     EXPECT_GT(onSheet, 30);
 }
 
-// That of scenes/text-plane.json comes nearer by a quarter of a percent a frame; at 3% samples spread faster than the tolerance
-// has them replaced.
+// That of scenes/text-plane.json comes nearer by half a percent a frame at most; at 3% samples spread faster than the default
+// tolerance has them replaced, which costs 18% of the density.
 TEST(StablePromises, DensityStaysWhileTheCameraComesNearer) {
     const Extent2 extent{96, 64};
     for (const float step : {0.01f, 0.03f}) {
@@ -267,6 +303,32 @@ TEST(StablePromises, DensityStaysWhileTheCameraComesNearer) {
             }
         }
     }
+}
+
+// Blocks of pixels side by side, and batches that are handed on in the middle of a row.
+TEST(StablePromises, WideImagesAreTheSameOnAnyNumberOfThreads) {
+    const Extent2 extent{400, 20};
+    for (const char* batches : {"dense", "per-pixel"}) {
+        std::string first;
+        for (const int threads : {1, 8}) {
+            setThreadCount(threads);
+            Player player(extent);
+            StableModule module;
+            module.resize(extent);
+            setParameter([&](ParameterVisitor& v) { module.describe(v); }, "density", 4.0f);
+            setParameter([&](ParameterVisitor& v) { module.describe(v); }, "batches", batches);
+            const auto posed = sceneOf(1);
+            std::string all;
+            for (FrameNumber frame = 0; frame < 3; ++frame) {
+                const auto nearer = [](FrameNumber f) { return lookFrom(Vec3(0.02f * static_cast<float>(f), 1.6f, 3.5f), Vec3(0, 0.6f, 0)); };
+                ASSERT_EQ(player.run(module, frame, posed, nearer(frame), nearer(frame - 1), {.camera = true}), RunResult::Completed);
+                all += player.digest(module) + '\n';
+            }
+            if (first.empty()) first = all;
+            EXPECT_EQ(all, first) << batches;
+        }
+    }
+    setThreadCount(0);
 }
 
 // All samples of a dense screen land in a few pixels as the camera jumps back: 16 at most stay in each, and the analysis thins
@@ -303,7 +365,6 @@ TEST(StablePromises, APileOfSamplesLeavesSixteenAPixel) {
         most = std::max(most, count);
         const auto next = pixel + 1 < piled.first.size() ? piled.first[pixel + 1] : static_cast<uint32_t>(piled.sources.size());
         const int kept = std::popcount(subpixel::occupied(piled.words[pixel]));
-        EXPECT_LE(kept, 16);
         EXPECT_LE(kept, count);
         EXPECT_GE(static_cast<int>(next - piled.first[pixel]), kept);
     }

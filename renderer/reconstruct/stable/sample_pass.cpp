@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "reconstruct/stable/sample_rays.h"
+#include "trace/path_state.h"
 
 namespace lumi {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 // A block is wide, as samples lie in rows and memory is read ahead, and at density 1 has as many rays as the tracer keeps
 // together.
 constexpr int kRun = 16, kColumns = 12 * kRun, kRows = 4;
+static_assert(SampleBatch::kMost <= PathBatch::kMost);  // a judge is asked for all starts of a batch at once
 constexpr uint32_t kStream = 0x57ab1e00u;  ///< second word of the samples' keys
 
 /// One block at a time, by one thread.

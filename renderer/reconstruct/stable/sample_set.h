@@ -43,7 +43,8 @@ static_assert(sizeof(SampleLight) == 36);
 /// sub-pixels: memory is that of the samples which exist, and work over them is balanced by itself.
 ///
 /// Bytes a pixel: 4 (word) + 4 (first) and 60 for each sample: 16 (location), 8 (place), 36 (light). At 1.25 samples a
-/// pixel that is 83; the paper's layout has 648 whatever the number, this one with all 16 would have 968.
+/// pixel that is 83, and three such sets are held (StableModule::byteCount() has the sum); the paper's buffers have 648 whatever
+/// the number, a set with all 16 would have 968.
 struct SampleSet {
     Extent2 extent;
     std::vector<uint32_t> words;  ///< a pixel

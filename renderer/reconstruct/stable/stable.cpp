@@ -135,9 +135,10 @@ Convergence StableModule::convergence() const {
 }
 
 size_t StableModule::byteCount() const {
-    // The threads' scratch is not part of it: as in the tracer, it is small, and depends on their number.
+    // Not what is only for looking at: taps and the densities they show. Nor the threads' scratch: as in the tracer, it is
+    // small, and depends on their number.
     return history_.byteCount([](const Kept& kept) { return kept.samples.bytes(); }) + frame_.bytes() + weights_.bytes() + motion_.bytes() +
-           localDensity_.bytes() + temporal_.bytes() + taps_.bytes();
+           temporal_.bytes();
 }
 
 }  // namespace lumi

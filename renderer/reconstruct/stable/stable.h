@@ -27,8 +27,8 @@ namespace lumi {
 /// - A sample that its ray does not find is evicted. If all of a pixel are occluded the first moves to what occludes it.
 /// - The density's tolerance is 0.75, not 1: a view that zooms in spreads samples, and at 1 the density may fall far below
 ///   the target, for pixels act only where the window is empty. At 0.75 it falls by 13% while the view comes nearer by 1% a
-///   frame, and by 18% at 3%; at 0.5 by less, but eight times as many samples are exchanged, each a step in the image. It is at
-///   most the target, or nothing would ever be added to an empty screen. At the image's border density counts the area inside.
+///   frame, and by 18% at 3%; at 0.5 by less, but two to eight times as many samples are exchanged, each a step in the image. It is
+///   at most the target, or nothing would ever be added to an empty screen. At the image's border density counts the area inside.
 /// - Samples have places, not cells of 8 x 8. Those of the sky are lost when an orthographic camera moves: it sees one
 ///   direction, which tells no place.
 /// - Directions of indirect light are those of the integrator (BSDF sampling), and what came to other lobes than the

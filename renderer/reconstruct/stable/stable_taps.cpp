@@ -89,9 +89,9 @@ void drawBitmasks(const SampleSet& samples, Image* out) {
 std::vector<Tap> stableTaps() {
     return {
         {.name = "subpixels", .channels = "RGB", .colourMap = "none", .help = "The 4x4 sub-pixels of the pixels around the one under the pointer, or around the middle, each drawn as a pixel: visible samples blue, occluded red (fig. 6)"},
-        {.name = "bitmasks", .channels = "RGBXY", .colourMap = "none", .help = "Visible samples as blue, occluded ones as red, four of them as full colour; zoomed in, the window shows each pixel's 4x4 sub-pixels (fig. 6). X and Y are the occupancy and the occlusion bits"},
+        {.name = "bitmasks", .channels = "RGBXY", .colourMap = "none", .help = "Visible samples as blue, occluded and just evicted ones as red, four of them as full colour; zoomed in, the window shows each pixel's 4x4 sub-pixels (fig. 6). X and Y are the occupancy and the occlusion bits"},
         {.name = "occupancy", .channels = "Y", .rangeHigh = 65535, .help = "The 16 occupancy bits as a number; bit b is sub-pixel b, in rows from the top left"},
-        {.name = "occlusion", .channels = "Y", .rangeHigh = 65535, .help = "The 16 occlusion bits as a number"},
+        {.name = "occlusion", .channels = "Y", .rangeHigh = 65535, .help = "The 16 occlusion bits as a number; those of samples that were just evicted are set too"},
         {.name = "sampleCount", .channels = "Y", .unit = "samples", .rangeHigh = 4, .help = "Visible samples in the pixel"},
         {.name = "density", .channels = "Y", .unit = "samples/px", .rangeHigh = 4, .help = "Local density d after reprojection: visible samples in the 2x2 pixels around (sec. 4.2)"},
         {.name = "changes", .channels = "RGB", .colourMap = "none", .help = "Samples that the analysis added (green) and removed (red), as in fig. 4"},
