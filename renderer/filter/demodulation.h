@@ -12,7 +12,7 @@ namespace lumi {
 /// blows up.
 struct DemodulatedFrame {
     Image emission;   ///< RGB; light that reaches the camera unscattered, emitters and sky
-    Image albedo;     ///< RGB in [0.01, 1]
+    Image albedo;     ///< RGB in [0.01, 1]; 0.01 on the sky, which has no light to divide
     Image direct;     ///< RGB, demodulated, within 1e15 of 0
     Image indirect;   ///< RGB, demodulated, within 1e15 of 0
     Image dropped;    ///< Y, 1 where a value of the input was not finite and stands as 0

@@ -20,7 +20,7 @@ namespace lumi {
 ///                      + specularAlbedo * (directSpecular + indirectSpecular)
 ///
 /// holds in every pixel up to rounding. The four are demodulated illumination. Where a channel of albedo (or of
-/// specularAlbedo) would be below 0.01, that term is stored undivided with albedo 1 in that channel; no other albedo is 1.
+/// specularAlbedo) would be below 0.01, that term is stored undivided with albedo 1 in that channel; no other albedo of a surface is 1.
 /// "Specular" is every lobe but the diffuse one, transmission included. "Direct" is light that meets one surface
 /// between emitter and camera; "indirect" is all else. Emission is light that reaches the camera unscattered: emitters
 /// and the sky seen directly.

@@ -20,21 +20,34 @@ fs::path assetFolder() {
     return fs::path(LUMISCOPE_SOURCE_DIR).parent_path() / "shared" / "assets";
 }
 
-/// Calls found(name) for each text of a JSON value that names an asset, in document order.
+/// Calls found(name) for each asset that a JSON value names as a file, in document order.
 template <class Found>
 void forAssetNames(const JsonValue& value, const Found& found) {
-    if (value.isString() && isAssetName(value.text)) found(value.text);
     for (const JsonValue& item : value.items) forAssetNames(item, found);
-    for (const JsonMember& member : value.members) forAssetNames(member.value, found);
+    for (const JsonMember& member : value.members) {
+        const bool namesFile = member.key == "file" || member.key == "gltf" || member.key == "obj";
+        if (namesFile && member.value.isString() && isAssetName(member.value.text)) found(member.value.text);
+        forAssetNames(member.value, found);
+    }
+}
+
+/// The path in the folder of assets. Throws Error(BadInput) if it leads out of it.
+std::string pathOf(const std::string& name) {
+    const std::string path = name.substr(kPrefix.size());
+    const fs::path normal = fs::path(path).lexically_normal();
+    const bool climbs = normal.is_absolute() || (!normal.empty() && *normal.begin() == "..");
+    if (climbs || path.find('\0') != path.npos)
+        throwBadInput({"the file name \"" + name + "\" leads out of the folder of assets", "", "a path under $LUMISCOPE_ASSETS", ""});
+    return path;
 }
 
 ErrorText absence(const std::string& name) {
-    const std::string path = name.substr(kPrefix.size());
+    const std::string path = pathOf(name);
     return {"no such asset", (assetFolder() / path).lexically_normal().string(), "$LUMISCOPE_ASSETS to name a folder that holds " + path, ""};
 }
 
 std::optional<fs::path> locate(const std::string& name) {
-    fs::path file = assetFolder() / name.substr(kPrefix.size());
+    fs::path file = assetFolder() / pathOf(name);
     std::error_code ignored;
     if (fs::is_regular_file(file, ignored)) return file;
     return std::nullopt;

@@ -9,7 +9,7 @@ namespace lumi {
 bool isAssetName(const std::string& name);
 
 /// The file that an asset's name stands for. Throws Error(BadInput) that says where it was sought and what to do if it is
-/// not there.
+/// not there, or if the name leads out of the folder.
 std::filesystem::path findAsset(const std::string& name);
 
 /// What findAsset() would say of the first asset in a scene file that is not there; empty if all are, or if the file

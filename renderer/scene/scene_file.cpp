@@ -11,7 +11,6 @@ namespace lumi {
 namespace fs = std::filesystem;
 namespace {
 
-
 void readVersion(ObjectReader& top) {
     const JsonValue& version = top.need("version");
     if (!version.isNumber() || version.number != 1) refuseValue(top.tree(), version, "version", "1");

@@ -10,6 +10,7 @@
 #include "image/hdr.h"
 #include "reconstruct/catalog.h"
 #include "params/renaming_visitor.h"
+#include "scene/asset_folder.h"
 
 namespace lumi {
 namespace {
@@ -143,7 +144,7 @@ void DocumentFields::readSky(Document& document, Environment& sky, const std::st
         document.environmentDigest_.clear();
         return;
     }
-    std::filesystem::path path = sky.file;
+    std::filesystem::path path = isAssetName(sky.file) ? findAsset(sky.file) : std::filesystem::path(sky.file);
     const std::filesystem::path beside = std::filesystem::path(where).parent_path() / path;
     if (!std::filesystem::exists(path) && std::filesystem::exists(beside)) path = beside;
     sky.image = std::make_shared<Image>(loadImage(path));

@@ -30,7 +30,7 @@ Signals rowOf(const std::vector<Lobes>& pixels, float light) {
     return signals;
 }
 
-/// Light that a filter spreads from pixel to pixel must not jump where a dark texture or metal passes the albedo below
+/// Light that a filter spreads from pixel to pixel must not jump by more than a factor of two where a dark texture or metal passes the albedo below
 /// which the signals store it undivided.
 TEST(Demodulation, GivesTheLightWhateverTheAlbedo) {
     const std::vector<Lobes> lit{{0, 0.0101f}, {0.0101f, 0}, {0.0101f, 0.0101f}, {0.5f, 0.04f}, {1, 0}, {0, 1}, {0.3f, 0}, {0.96f, 0.04f}};

@@ -1,3 +1,4 @@
+#include "scene/asset_folder.h"
 #include "scene/load.h"
 
 #include <gtest/gtest.h>
@@ -196,6 +197,24 @@ TEST(Assets, AreSoughtInTheVariablesFolder) {
     writeFileAtomically(assets / "sky.hdr", std::string_view(tinyHdr()));
     EXPECT_EQ(missing(), "");
     EXPECT_EQ(load()->triangleCount(), 1);
+}
+
+TEST(Assets, StayInTheirFolder) {
+    TemporaryFolder folder;
+    const AssetsVariable variable(folder.path());
+    for (const char* name : {"assets:../far.png", "assets:/tmp/far.png", "assets:a/../../far.png"}) {
+        const std::string text = std::string(R"({"version": 1, "environment": {"file": ")") + name + "\"}}";
+        writeFileAtomically(folder / "scene.json", std::string_view(text));
+        MessageLog log;
+        expectError(ErrorKind::BadInput, [&] { loadScene(folder / "scene.json", log); }, {"leads out of the folder of assets"});
+    }
+}
+
+// A title is no file.
+TEST(Assets, AreWhatFilesAreNamed) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "scene.json", std::string_view(R"({"version": 1, "title": "assets: none"})"));
+    EXPECT_EQ(missingAsset(folder / "scene.json"), "");
 }
 
 TEST(FindScene, BuiltInScenesComeFirstInTheirOrder) {

@@ -208,7 +208,7 @@ TEST(LightTree, EdgeCases) {
     EXPECT_TRUE(std::isfinite(choice.probability));
 }
 
-/// The most uneven of trees: each cut takes a few lights off.
+/// An uneven tree of many levels: each cut takes a few lights off.
 TEST(LightTree, LightsInAGeometricRow) {
     std::vector<LightBounds> lights(200);
     for (uint32_t i = 0; i < lights.size(); ++i) {
