@@ -13,14 +13,13 @@
 namespace lumi {
 namespace {
 
-constexpr size_t kLine = 64, kPage = 4096;
+constexpr size_t kLine = 64, kPage = 4096, kHugePage = size_t(2) << 20;
 
 uintptr_t addressOf(const void* block) { return reinterpret_cast<uintptr_t>(block); }
 
 }  // namespace
 
 TEST(PlaneMemory, IsWholeAndBeginsOnACacheLine) {
-    constexpr size_t kHugePage = size_t(2) << 20;
     for (const size_t bytes : {size_t(0), size_t(1), kLine, kPage, size_t(65535), size_t(65536), kHugePage - 1, kHugePage, 3 * kHugePage + 5}) {
         void* const block = allocatePlaneMemory(bytes);
         ASSERT_NE(block, nullptr);
@@ -35,7 +34,7 @@ TEST(PlaneMemory, LargeBlocksBeginAtOtherDistancesFromTheirPages) {
     std::vector<void*> blocks;
     std::set<uintptr_t> distances;
     for (int i = 0; i < 16; ++i) {
-        blocks.push_back(allocatePlaneMemory(1 << 18));
+        blocks.push_back(allocatePlaneMemory(kHugePage));
         distances.insert(addressOf(blocks.back()) % kPage);
     }
     EXPECT_EQ(distances.size(), blocks.size());
