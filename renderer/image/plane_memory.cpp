@@ -31,8 +31,9 @@ size_t leadOf(size_t bytes) {
 void* allocatePlaneMemory(size_t bytes) {
     if (bytes > std::numeric_limits<size_t>::max() / 2) throw std::bad_alloc();
     const size_t lead = leadOf(bytes), whole = roundedUp(lead + bytes, kLine), huge = whole / kHugePage * kHugePage;
-    void* given = nullptr;
-    if (::posix_memalign(&given, huge > 0 ? kHugePage : kLine, whole) != 0) throw std::bad_alloc();
+    // Up to a huge page more than needed, never touched: blocks that come back fit the next, and stay on huge pages.
+    void* const given = huge > 0 ? std::aligned_alloc(kHugePage, huge + kHugePage) : std::aligned_alloc(kLine, whole);
+    if (!given) throw std::bad_alloc();
     if (huge > 0) ::madvise(given, huge, MADV_HUGEPAGE);  // advice: refused, the memory is as good
     char* const start = static_cast<char*>(given) + lead;
     reinterpret_cast<void**>(start)[-1] = given;
