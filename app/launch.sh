@@ -8,6 +8,11 @@ source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build_dir=$source_dir/build/release
 . "$source_dir/app/packages.sh"
 
+case ${1:-} in -h | --help)
+    sed -n '2,5s/^# *//p' "$0"
+    echo "Options are those of the program: build/release/bin/lumiscope --help, once it is built."
+    exit 0 ;;
+esac
 if [ "${1:-}" = --install ]; then
     install_packages "${build_packages[@]}" "${test_packages[@]}"
     echo "All packages are installed." >&2
