@@ -143,28 +143,33 @@ void sortRays(std::span<const BatchRay> rays, const Bounds3& bounds, uint16_t* o
     for (size_t i = 0; i < rays.size(); ++i) order[next[keys[i]]++] = static_cast<uint16_t>(i);
 }
 
+/// Calls trace(some rays, their results, their order) for all rays, those that are at once sorted.
+template <int Side, bool Octants, class Result, class Trace>
+void forSorted(const Bounds3& bounds, std::span<const BatchRay> rays, std::span<Result> results, Trace&& trace) {
+    uint16_t order[kAtOnce];
+    for (size_t first = 0; first < rays.size(); first += kAtOnce) {
+        const size_t count = std::min(kAtOnce, rays.size() - first);
+        sortRays<Side, Octants>(rays.subspan(first, count), bounds, order);
+        trace(rays.subspan(first, count), results.subspan(first, count), order);
+    }
+}
+
 /// Rays that start here and there and go anywhere, in a scene whose few nodes most of them meet: with their like.
 template <int N>
 void intersectSorted(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits,
                      RTCIntersectContext& context) {
-    uint16_t order[kAtOnce];
-    for (size_t first = 0; first < rays.size(); first += kAtOnce) {
-        const size_t count = std::min(kAtOnce, rays.size() - first);
-        sortRays<2, true>(rays.subspan(first, count), scene.bounds(), order);
-        intersectPackets<N>(scene.handle(), rays.subspan(first, count), hits.subspan(first, count), context, order);
-    }
+    forSorted<2, true>(scene.bounds(), rays, hits, [&](auto some, auto found, const uint16_t* order) {
+        intersectPackets<N>(scene.handle(), some, found, context, order);
+    });
 }
 
 /// Shadow rays likewise: most go to the same few lights, so where they start says enough.
 template <int N>
 void occludedSorted(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked,
                     RTCIntersectContext& context) {
-    uint16_t order[kAtOnce];
-    for (size_t first = 0; first < rays.size(); first += kAtOnce) {
-        const size_t count = std::min(kAtOnce, rays.size() - first);
-        sortRays<4, false>(rays.subspan(first, count), scene.bounds(), order);
-        occludedPackets<N>(scene.handle(), rays.subspan(first, count), blocked.subspan(first, count), context, order);
-    }
+    forSorted<4, false>(scene.bounds(), rays, blocked, [&](auto some, auto found, const uint16_t* order) {
+        occludedPackets<N>(scene.handle(), some, found, context, order);
+    });
 }
 
 /// All rays of a call walk the tree together, node by node.
