@@ -50,6 +50,15 @@ Material shining(bool textured, bool bothSides) {
     return glow;
 }
 
+/// A ball that shines unlit, in colours of its vertices of so much `green`.
+void addColouredBall(TinyScene& tiny, float green, bool textured) {
+    Mesh ball = sphereMesh(0.6f, 16, 8);
+    for (const Vec3& n : ball.normals) ball.colours.emplace_back(0.5f + 0.5f * n.x, green, 0.5f - 0.5f * n.x, 1.0f);
+    Material unlit = shining(textured, true);
+    unlit.unlit = true;
+    tiny.add(std::move(ball), unlit, translation(Vec3(0.4f, 1.5f, 0)));
+}
+
 const Emitter kEmitters[] = {
     {"Disk", [](TinyScene& tiny) { tiny.addLight(flatLight(LightType::Disk, false), kAbove); }},
     {"TexturedDisk", [](TinyScene& tiny) { tiny.addLight(flatLight(LightType::Disk, true), kAbove); }},
@@ -67,22 +76,8 @@ const Emitter kEmitters[] = {
          Mesh sheet = rectangleMesh(1.4f, 1.4f, Facing::Y, 5, 5);
          tiny.add(std::move(sheet), shining(true, true), translation(Vec3(0.2f, 1.1f, 0.2f)) * scaling(Vec3(1, 1, -1)));
      }},
-    {"UnlitMeshInItsVerticesColours",
-     [](TinyScene& tiny) {
-         Mesh ball = sphereMesh(0.6f, 16, 8);
-         for (const Vec3& n : ball.normals) ball.colours.emplace_back(0.5f + 0.5f * n.x, 0.6f, 0.5f - 0.5f * n.x, 1.0f);
-         Material unlit = shining(true, true);
-         unlit.unlit = true;
-         tiny.add(std::move(ball), unlit, translation(Vec3(0.4f, 1.5f, 0)));
-     }},
-    {"UnlitMeshWithoutATexture",
-     [](TinyScene& tiny) {
-         Mesh ball = sphereMesh(0.6f, 16, 8);
-         for (const Vec3& n : ball.normals) ball.colours.emplace_back(0.5f + 0.5f * n.x, 0.3f, 0.5f - 0.5f * n.x, 1.0f);
-         Material unlit = shining(false, true);
-         unlit.unlit = true;
-         tiny.add(std::move(ball), unlit, translation(Vec3(0.4f, 1.5f, 0)));
-     }},
+    {"UnlitMeshInItsVerticesColours", [](TinyScene& tiny) { addColouredBall(tiny, 0.6f, true); }},
+    {"UnlitMeshWithoutATexture", [](TinyScene& tiny) { addColouredBall(tiny, 0.3f, false); }},
     {"ManyBalls",
      [](TinyScene& tiny) {
          const auto ball = std::make_shared<const Mesh>(facetedSphere(0.15f, 8));
