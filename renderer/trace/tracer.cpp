@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
-#include <mutex>
 #include <utility>
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/spares.h"
 #include "math/hash.h"
 #include "trace/camera_starts.h"
 #include "trace/integrator.h"
@@ -68,23 +68,11 @@ struct Tracer::Impl {
     TraceScene scene;
     std::atomic<uint64_t> cameraRays{0}, bounceRays{0}, shadowRays{0}, nonFinite{0};
 
-    std::mutex mutex;
-    std::vector<std::unique_ptr<PathBatch>> spareBatches;
+    Spares<PathBatch> spares;
 
     void makeTables() {
         scene.tables = makeSceneTables(*scene.posed, scene.embree);
         scene.lights.build(*scene.posed, scene.tables);
-    }
-    std::unique_ptr<PathBatch> takeBatch() {
-        std::lock_guard lock(mutex);
-        if (spareBatches.empty()) return std::make_unique<PathBatch>();
-        auto batch = std::move(spareBatches.back());
-        spareBatches.pop_back();
-        return batch;
-    }
-    void returnBatch(std::unique_ptr<PathBatch> batch) {
-        std::lock_guard lock(mutex);
-        spareBatches.push_back(std::move(batch));
     }
     void add(const TraceCounts& counts) {
         cameraRays.fetch_add(counts.cameraRays, std::memory_order_relaxed);
@@ -156,7 +144,7 @@ bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_t
             const int top = tile / frame.tileColumns() * SignalsObserver::kTile;
             const int right = std::min(left + SignalsObserver::kTile, sampling.extent.width);
             const int bottom = std::min(top + SignalsObserver::kTile, sampling.extent.height);
-            std::unique_ptr<PathBatch> batch = impl_->takeBatch();
+            std::unique_ptr<PathBatch> batch = impl_->spares.take();
             TraceCounts counts;
             bool whole = true;
             frame.beginTile(tile);
@@ -167,7 +155,7 @@ bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_t
             }
             if (whole) frame.endTile(tile), ++done;
             impl_->add(counts);
-            impl_->returnBatch(std::move(batch));
+            impl_->spares.giveBack(std::move(batch));
         },
         stop);
     return done == tiles.size();
@@ -191,7 +179,7 @@ bool Tracer::Impl::traceBatches(std::span<const PathStart> starts, std::span<con
         [&](int64_t rangeBegin, int64_t rangeEnd) {
             const int64_t begin = observers.empty() ? rangeBegin : slotEnd(rangeBegin);
             const int64_t end = observers.empty() ? rangeEnd : slotEnd(rangeEnd);
-            std::unique_ptr<PathBatch> batch = takeBatch();
+            std::unique_ptr<PathBatch> batch = spares.take();
             TraceCounts counts;
             for (int64_t i = begin; i < end;) {
                 const auto size = static_cast<size_t>(std::min<int64_t>(end - i, PathBatch::kMost));
@@ -206,7 +194,7 @@ bool Tracer::Impl::traceBatches(std::span<const PathStart> starts, std::span<con
                 i += static_cast<int64_t>(size);
             }
             add(counts);
-            returnBatch(std::move(batch));
+            spares.giveBack(std::move(batch));
         },
         stop);
     return done == count;

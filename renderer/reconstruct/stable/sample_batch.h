@@ -1,7 +1,4 @@
 #pragma once
-#include <memory>
-#include <mutex>
-
 #include "reconstruct/stable/sample_frame.h"
 #include "trace/tracer.h"
 
@@ -27,17 +24,6 @@ struct SampleBatch {
     Vec3 direct[kMost], diffuseShare[kMost];  ///< by slot
 
     void clear() { pixelCount = sampleCount = startCount = 0; }
-};
-
-/// Batches that no thread is at, kept for their memory.
-class SpareBatches {
-public:
-    std::unique_ptr<SampleBatch> take();
-    void giveBack(std::unique_ptr<SampleBatch> batch);
-
-private:
-    std::mutex mutex_;
-    std::vector<std::unique_ptr<SampleBatch>> spare_;
 };
 
 }  // namespace lumi

@@ -1,4 +1,5 @@
 #pragma once
+#include "base/spares.h"
 #include "reconstruct/stable/sample_batch.h"
 #include "reconstruct/stable/shading.h"
 #include "reconstruct/stable/verification.h"
@@ -16,7 +17,7 @@ struct SamplePass {
     uint32_t random = 0;  ///< names the frame
     SampleFrame& frame;   ///< numbered: see numberSamples()
     SampleSet& next;
-    SpareBatches& spare;
+    Spares<SampleBatch>& spare;
 };
 
 /// What verification did.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 namespace lumi {
+
 void GatheringSettings::describe(ParameterVisitor& v) {
     v.number("indirect-alpha", indirectAlpha,
              {.label = "Indirect alpha",

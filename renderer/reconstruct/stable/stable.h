@@ -83,7 +83,7 @@ private:
     TemporalIntegration temporal_{0.25f};
     FrameHistory<Kept> history_;
     SampleFrame frame_;
-    SpareBatches spare_;
+    Spares<SampleBatch> spare_;
     Image weights_, motion_, localDensity_;
     VerificationCounts counts_;
     CapturedTaps taps_;
