@@ -251,6 +251,11 @@ void Session::restart(FrameNumber first) {
     impl_->wake.notify_all();
 }
 
+bool Session::busy() const {
+    std::lock_guard lock(impl_->mutex);
+    return impl_->working || impl_->hasWork() || impl_->waitsForStream();
+}
+
 uint64_t Session::abandonedFrames() const {
     std::lock_guard lock(impl_->mutex);
     return impl_->abandoned;

@@ -113,6 +113,9 @@ public:
     bool redo();
 
     // Time and frames.
+    /// Is a frame, an earlier one, a file or a check being made, or due? While not, the snapshot is the last one until
+    /// something is asked for.
+    bool busy() const;
     void setRendering(bool on);   ///< pause or go on
     bool rendering() const;
     void setPlaying(bool on);     ///< does time advance by 1/fps a frame

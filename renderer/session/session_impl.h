@@ -114,7 +114,8 @@ struct Session::Impl {
     bool resting = false;    ///< the shown frame has converged
     bool frameFailed = false;  ///< drawing failed: wait for a change
     std::stop_source frameStop;
-    bool drawing = false;  ///< a frame that changes may abandon
+    bool working = false;  ///< something was taken up and is not done
+    bool drawing = false;  ///< it is a frame that changes may abandon
     bool steppingBack = false;  ///< it is one of those that a step back runs
     bool heldBack = false;  ///< a change came in a stream of changes: see kStreamMs
     bool guarded = false;  ///< the frame before was abandoned

@@ -27,6 +27,7 @@ void Session::Impl::loop(std::stop_token quit) {
             }
             if (quit.stop_requested()) break;
             work = takeWork();
+            working = true;
         }
         try {
             perform(work);
@@ -36,7 +37,7 @@ void Session::Impl::loop(std::stop_token quit) {
             frameFailed = true;
         }
         std::lock_guard lock(mutex);
-        drawing = steppingBack = checking = false;
+        working = drawing = steppingBack = checking = false;
         replayed.reset();
     }
     finishSaves();

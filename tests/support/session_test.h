@@ -19,11 +19,11 @@ inline const std::filesystem::path kCornell = LUMISCOPE_SOURCE_DIR "/scenes/corn
 /// A session on the Cornell box, 32 x 24 pixels, and ways to wait for what it does.
 class SessionTest : public testing::Test {
 protected:
-    /// Waits until `condition` holds; fails after a minute, which only a deadlock takes.
+    /// Waits until `condition` holds; fails after minutes, which only a deadlock takes: frames are drawn at a low priority.
     void waitFor(const char* what, const std::function<bool()>& condition) {
         Timer timer;
         while (!condition()) {
-            ASSERT_LT(timer.elapsedMs(), 60'000) << "waited in vain: " << what;
+            ASSERT_LT(timer.elapsedMs(), 240'000) << "waited in vain: " << what;
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
     }
@@ -36,11 +36,7 @@ protected:
     /// Pauses, and waits until nothing is drawn any more.
     void pause() {
         session.setRendering(false);
-        uint64_t serial = 0;
-        do {
-            serial = session.snapshot()->serial;
-            std::this_thread::sleep_for(std::chrono::milliseconds(150));
-        } while (session.snapshot()->serial != serial);
+        waitFor("the end of what is being drawn", [&] { return !session.busy(); });
     }
     Image result() { return *session.snapshot()->results.at("accumulate"); }
     bool logged(const std::string& part) {

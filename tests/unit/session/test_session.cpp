@@ -92,9 +92,12 @@ TEST_F(SessionTest, AChangeAbandonsTheFrameInFlight) {
     }
     session.setAll({{"render.width", 16}, {"render.height", 12}, {"render.spp", 1}});
     timer.restart();
-    waitFor("small frames", [&] { return session.snapshot()->extent.width == 16; });
+    waitFor("small frames", [&] {
+        const auto snapshot = session.snapshot();
+        EXPECT_FALSE(snapshot->extent.width == 640 && !snapshot->preview) << "a frame of seconds was drawn to its end";
+        return snapshot->extent.width == 16;
+    });
     std::printf("    the last of a stream is seen after %.1f ms\n", timer.elapsedMs());
-    EXPECT_LT(timer.elapsedMs(), 3000) << "such a frame takes longer";
 }
 
 TEST_F(SessionTest, DisplayChangesDoNotRenderAgain) {
@@ -171,8 +174,10 @@ TEST_F(SessionTest, RestartBeginsAtFrameZero) {
 TEST_F(SessionTest, RestsAtTheTarget) {
     open({{"accumulate.limit", "true"}, {"accumulate.max-samples", "6"}});
     waitFor("the target", [&] { return session.snapshot()->accumulatedSamples == 6; });
-    const uint64_t serial = session.snapshot()->serial;
     EXPECT_EQ(session.snapshot()->targetSamples, 6u);
+    waitFor("rest", [&] { return !session.busy(); });
+    const uint64_t serial = session.snapshot()->serial;
+    EXPECT_EQ(session.snapshot()->accumulatedSamples, 6u);
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     EXPECT_EQ(session.snapshot()->serial, serial) << "it goes on drawing";
     session.setText("accumulate.max-samples", "8");
