@@ -91,6 +91,13 @@ fs::path unusedPath(const fs::path& path) {
     }
 }
 
+std::optional<fs::path> pathInside(const fs::path& folder, const std::string& name) {
+    const fs::path relative = fs::path(name).lexically_normal();
+    const bool climbs = relative.is_absolute() || (!relative.empty() && *relative.begin() == "..");
+    if (climbs || name.find('\0') != name.npos) return std::nullopt;
+    return folder / relative;
+}
+
 std::string lowerExtension(const fs::path& path) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,6 +20,10 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view tex
 
 /// `path`, or `stem-1.ext`, `stem-2.ext`, ... : the first that does not exist.
 std::filesystem::path unusedPath(const std::filesystem::path& path);
+
+/// folder / name, normalised, where a file names another one; nothing if that leads out of `folder` (an absolute name,
+/// too many `..`) or `name` holds a null byte. Looks at the text alone: symbolic links are followed later.
+std::optional<std::filesystem::path> pathInside(const std::filesystem::path& folder, const std::string& name);
 
 /// Lower-case extension with its dot, ".exr".
 std::string lowerExtension(const std::filesystem::path& path);

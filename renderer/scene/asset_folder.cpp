@@ -31,23 +31,23 @@ void forAssetNames(const JsonValue& value, const Found& found) {
     }
 }
 
-/// The path in the folder of assets. Throws Error(BadInput) if it leads out of it.
-std::string pathOf(const std::string& name) {
-    const std::string path = name.substr(kPrefix.size());
-    const fs::path normal = fs::path(path).lexically_normal();
-    const bool climbs = normal.is_absolute() || (!normal.empty() && *normal.begin() == "..");
-    if (climbs || path.find('\0') != path.npos)
+std::string withoutPrefix(const std::string& name) { return name.substr(kPrefix.size()); }
+
+/// Where the asset should be. Throws Error(BadInput) if that is not in the folder of assets.
+fs::path pathOf(const std::string& name) {
+    std::optional<fs::path> path = pathInside(assetFolder(), withoutPrefix(name));
+    if (!path)
         throwBadInput({"the file name \"" + name + "\" leads out of the folder of assets", "", "a path under $LUMISCOPE_ASSETS", ""});
-    return path;
+    return *std::move(path);
 }
 
 ErrorText absence(const std::string& name) {
-    const std::string path = pathOf(name);
-    return {"no such asset", (assetFolder() / path).lexically_normal().string(), "$LUMISCOPE_ASSETS to name a folder that holds " + path, ""};
+    return {"no such asset", pathOf(name).lexically_normal().string(),
+            "$LUMISCOPE_ASSETS to name a folder that holds " + withoutPrefix(name), ""};
 }
 
 std::optional<fs::path> locate(const std::string& name) {
-    fs::path file = assetFolder() / pathOf(name);
+    fs::path file = pathOf(name);
     std::error_code ignored;
     if (fs::is_regular_file(file, ignored)) return file;
     return std::nullopt;

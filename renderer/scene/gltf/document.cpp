@@ -198,11 +198,10 @@ void Document::pollStop() const {
 }
 
 std::filesystem::path Document::resolve(const std::string& uri) const {
-    const std::filesystem::path relative = std::filesystem::path(uri).lexically_normal();
-    const bool climbs = relative.is_absolute() || (!relative.empty() && *relative.begin() == "..");
-    if (climbs || uri.find("://") != uri.npos || uri.find('\0') != uri.npos)
+    std::optional<std::filesystem::path> file = pathInside(path_.parent_path(), uri);
+    if (!file || uri.find("://") != uri.npos)
         throwBadInput({.what = "the file name \"" + uri + "\" leads out of the asset's folder", .where = name_});
-    return path_.parent_path() / relative;
+    return *std::move(file);
 }
 
 bool Document::fileExists(const std::string& tinygltfPath) {

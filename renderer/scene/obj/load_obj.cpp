@@ -28,13 +28,13 @@ public:
 
     bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                     std::map<std::string, int>* byName, std::string*, std::string*) override {
-        const std::filesystem::path relative = std::filesystem::path(name).lexically_normal();
-        if (relative.empty() || relative.is_absolute() || *relative.begin() == "..") {
+        const std::optional<std::filesystem::path> file = pathInside(folder_, name);
+        if (!file) {
             log_.warning(where_ + ": the material file \"" + name + "\" leads out of the .obj's folder");
             return true;
         }
         try {
-            const std::vector<uint8_t> bytes = readFile(folder_ / relative, uint64_t(1) << 28);
+            const std::vector<uint8_t> bytes = readFile(*file, uint64_t(1) << 28);
             digest_ = digest64(bytes, digest_);
             std::istringstream text(std::string(bytes.begin(), bytes.end()));
             std::string warning, error;

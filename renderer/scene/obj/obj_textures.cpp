@@ -55,11 +55,10 @@ void ObjImages::request(const std::string& name) {
 void ObjImages::loadFile(const std::string& name, File& file) const {
     std::string portable = name;
     std::replace(portable.begin(), portable.end(), '\\', '/');
-    const std::filesystem::path relative = std::filesystem::path(portable).lexically_normal();
     try {
-        if (relative.is_absolute() || relative.empty() || *relative.begin() == "..")
-            throwBadInput({.what = "leads out of the .obj's folder", .where = name});
-        const std::vector<uint8_t> bytes = readFile(folder_ / relative, kMaxImageBytes);
+        const std::optional<std::filesystem::path> path = pathInside(folder_, portable);
+        if (!path) throwBadInput({.what = "leads out of the .obj's folder", .where = name});
+        const std::vector<uint8_t> bytes = readFile(*path, kMaxImageBytes);
         file.digest = digest64(bytes);
         file.image = decodeImage8(bytes, name);
     } catch (const Error& error) {

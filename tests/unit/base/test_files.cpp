@@ -67,6 +67,16 @@ TEST(Files, UnusedPathsCount) {
     EXPECT_EQ(unusedPath(folder / "shot.png"), folder / "shot-2.png");
 }
 
+TEST(Files, NamesInAFileStayInItsFolder) {
+    EXPECT_EQ(pathInside("/models", "a/b.png"), fs::path("/models/a/b.png"));
+    EXPECT_EQ(pathInside("/models", "a/../b.png"), fs::path("/models/b.png"));
+    EXPECT_EQ(pathInside("/models", "..b/.../c"), fs::path("/models/..b/.../c"));
+    EXPECT_EQ(pathInside("", "./b.png"), fs::path("b.png"));
+    using namespace std::string_literals;
+    for (const std::string& name : {"../b.png"s, "/b.png"s, "a/../../b.png"s, "a/./../..//b.png"s, ".."s, "a\0b"s, "//b"s})
+        EXPECT_FALSE(pathInside("/models", name)) << name;
+}
+
 TEST(Files, ExtensionsAndDigests) {
     EXPECT_EQ(lowerExtension("A.B.ExR"), ".exr");
     EXPECT_EQ(lowerExtension("none"), "");
