@@ -17,6 +17,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "scene/subdivision_folds.h"
+#include "scene/subdivision_refine.h"
 #include "scene/subdivision_topology.h"
 
 namespace lumi {
@@ -236,10 +237,15 @@ Vec2 parentCoordinates(const RefinedCage& refined, uint32_t face, const Vec2& uv
     return result;
 }
 
-SubdivisionSurface tessellateRefined(const SubdivisionCage& cage, int rate, const std::string& where) {
+/// Tessellates what can be handed to OpenSubdiv, or refines it until it can. `levels`: how often that was done already.
+SubdivisionSurface tessellateSafely(const SubdivisionCage& cage, int rate, int levels, const std::string& where) {
+    const std::unique_ptr<Far::TopologyRefiner> refiner = makeRefiner(cage, where);
+    const Far::TopologyLevel& level = refiner->GetLevel(0);
+    const bool refine = levels == 0 ? hasFolds(level) || hasCrowdedCreases(level) : hasOpenFolds(level);
+    if (!refine) return tessellateFaces(cage, *refiner, rate, levels == 0, where);
+
     const RefinedCage refined = refineOnce(cage, where);
-    const auto refiner = makeRefiner(refined.cage, where);
-    SubdivisionSurface out = tessellateFaces(refined.cage, *refiner, (rate + 1) / 2, false, where);
+    SubdivisionSurface out = tessellateSafely(refined.cage, (rate + 1) / 2, levels + 1, where);
     std::vector<bool> isDone(out.faceCoordinates.size(), false);
     for (size_t t = 0; t < out.triangleFace.size(); ++t) {
         for (int corner = 0; corner < 3; ++corner) {
@@ -259,9 +265,7 @@ SubdivisionSurface tessellateRefined(const SubdivisionCage& cage, int rate, cons
 SubdivisionSurface tessellate(const SubdivisionCage& cage, int rate, const std::string& where) {
     if (rate < 1 || rate > 64)
         throwBadInput({"the tessellation rate is out of range", where, "1 to 64", fmt::format("{}", rate)});
-    const std::unique_ptr<Far::TopologyRefiner> refiner = makeRefiner(cage, where);
-    SubdivisionSurface out = hasFolds(refiner->GetLevel(0)) ? tessellateRefined(cage, rate, where)
-                                                            : tessellateFaces(cage, *refiner, rate, true, where);
+    SubdivisionSurface out = tessellateSafely(cage, rate, 0, where);
     out.evaluate(cage.positions, out.mesh.positions, out.mesh.normals);
     return out;
 }

@@ -56,9 +56,9 @@ struct SubdivisionSurface {
 };
 
 /// Tessellates the limit surface [OpenSubdiv 3.5, Bfr] with `rate` segments along every edge of the cage, on all
-/// threads; a rate that is odd goes up by one where a vertex lies between only two faces (subdivision_folds.h). Throws
-/// Error(BadInput) headed by `where`: indices out of range, fewer than three corners, topology that cannot be refined,
-/// `rate` outside 1 to 64; Error(Resources) beyond the memory limit.
+/// threads; where OpenSubdiv needs the cage refined first (subdivision_folds.h), the rate goes up to an even number, or
+/// to a multiple of four. Throws Error(BadInput) headed by `where`: indices out of range, fewer than three corners,
+/// topology that cannot be refined, `rate` outside 1 to 64; Error(Resources) beyond the memory limit.
 SubdivisionSurface tessellate(const SubdivisionCage& cage, int rate, const std::string& where);
 
 }  // namespace lumi

@@ -1,38 +1,36 @@
 #pragma once
 #include <opensubdiv/far/topologyRefiner.h>
 
-#include <cstdint>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "scene/subdivision.h"
-
 namespace lumi {
 
-// A fold is a vertex with a closed ring of two faces. OpenSubdiv 3.5 builds the patches of faces with a fold in a
-// branch of its own, which reads and writes out of bounds where such a face has a boundary and a semi-sharp edge (its
-// pull request 1301), at a fold with one infinitely sharp edge (1336), and where the patch is shared through the
-// surface cache (1353). One level of refinement leaves every fold on quads without boundary, which avoids the first; a
-// dart's edge that is sharp but not infinitely so avoids the second, no cache the third.
+// What OpenSubdiv 3.5 must not be given, seen in its source and with it compiled for the address sanitizer. All of it
+// is avoided by refinement (subdivision_refine.h).
+//
+// A fold is a vertex with a closed ring of two faces. Faces with a fold have their patch built in a branch of its own:
+// - If such a face also has an open edge (a boundary, or one where more than two faces meet or two that go along it in
+//   the same direction), the sharpness of its open edges is written over the first sharp edges gathered around it, and
+//   as many entries at the end are read that nobody wrote, as indices of vertices (its pull request 1301). One level of
+//   refinement leaves a fold on quads all of whose edges are closed. The exception is a face with an edge from a vertex
+//   to itself: its halves join the same vertices, so their middle becomes a fold, on faces that may be open; a second
+//   level mends that.
+// - A fold with one infinitely sharp edge reads and writes out of bounds (1336): a dart's edge that is sharp but not
+//   infinitely so avoids it.
+// - A patch with a fold must not be shared through the surface cache (1353).
+//
+// Creases around a face are gathered into a buffer with as many entries as the patch has vertices. Between triangles
+// there may be more: a face whose corners have n edges in all has up to n - 3 creases but only n - 6 vertices. The
+// buffer overflows where it does not lie on the stack with room to spare. Between quads there are always enough.
 
-/// True if a vertex of the level, or a fan of faces at a non-manifold one, is a fold.
+/// True if the vertex, or a fan of faces at a non-manifold one, is a fold.
+bool isFold(const OpenSubdiv::Far::TopologyLevel& level, int vertex);
+
+/// True if any vertex is a fold.
 bool hasFolds(const OpenSubdiv::Far::TopologyLevel& level);
 
-/// A cage after one step of its own subdivision, and where it came from.
-struct RefinedCage {
-    struct Row {
-        std::vector<std::pair<uint32_t, float>> weights;  ///< (vertex of the coarse cage, weight)
-    };
-    SubdivisionCage cage;               ///< its limit surface is the coarse cage's; quads only; no darts at folds
-    std::vector<Row> vertices;          ///< of each refined vertex
-    std::vector<uint32_t> parentFace;   ///< of each refined face
-    std::vector<uint32_t> childOfFace;  ///< its number among its parent's children
-    std::vector<uint32_t> parentSize;   ///< corners of the parent
-};
+/// True if a face has a fold and an open edge.
+bool hasOpenFolds(const OpenSubdiv::Far::TopologyLevel& level);
 
-/// Refines `cage` once by its own rules [OpenSubdiv 3.5, Far]. Faces without a limit surface become holes. Throws as
-/// makeRefiner() does.
-RefinedCage refineOnce(const SubdivisionCage& cage, const std::string& where);
+/// True if the creases around a face among triangles may be too many for their buffer.
+bool hasCrowdedCreases(const OpenSubdiv::Far::TopologyLevel& level);
 
 }  // namespace lumi

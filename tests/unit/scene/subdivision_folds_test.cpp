@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "scene/obj/cage.h"
+#include "scene/subdivision_refine.h"
 #include "support/refined_cage.h"
 
 namespace lumi::test {
@@ -99,6 +100,51 @@ TEST(SubdivisionFolds, OtherFacesAreTessellatedAsWithoutThem) {
             ++compared;
         }
     EXPECT_GT(compared, alone.mesh.triangles.size());
+}
+
+/// Two triangles back to back, whose folds have the cage refined, beside faces that go round a vertex twice. Refined
+/// once, the middle of that vertex's edge to itself is a fold on open faces with semi-sharp edges about them: the other
+/// edges of the first quad are boundaries, those of the twin pentagons have two faces in the same direction.
+const std::string kPillow = "v 9 0 0\nv 10 0 0\nv 9 1 0\nf 1 2 3\nf 2 1 3\n";
+const std::string kDoubled[] = {
+    kPillow + "v 0 0 0\nv 1 0 0\nv 1 1 0.3\nv -0.5 1 0\nv 0.5 -1 0\nf 4 4 5 6\nf 4 7 8 5\n#t crease 2/1/0 4 3 2.0\n",
+    kPillow + "v 0 0 0\nv 1 0 0\nv 1 1 0.3\nv 0 1 0\nf 4 5 6 7 7\nf 4 5 6 7 7\n"};
+
+/// Two cones of triangles, base to base, all of whose edges are semi-sharp.
+std::string creasedCones(int sides) {
+    std::string vertices = "v 0 0 1\nv 0 0 -1\n", faces, creases;
+    for (int i = 0; i < sides; ++i) {
+        const float angle = 2 * kPi * float(i) / float(sides);
+        const int here = 2 + i, next = 2 + (i + 1) % sides;
+        vertices += fmt::format("v {} {} 0\n", std::cos(angle), std::sin(angle));
+        faces += fmt::format("f 1 {} {}\nf 2 {} {}\n", here + 1, next + 1, next + 1, here + 1);
+        for (const int end : {0, 1, next}) creases += fmt::format("#t crease 2/1/0 {} {} 2.0\n", here, end);
+    }
+    return vertices + faces + creases;
+}
+
+TEST(SubdivisionFolds, OfAFaceThatHasAVertexTwice) {
+    for (const std::string& text : kDoubled) {
+        const SubdivisionCage cage = cageOf(text, "doubled");
+        const RefinedCage once = refineOnce(cage, "test"), twice = refineOnce(once.cage, "test");
+        EXPECT_TRUE(hasOpenFolds(makeRefiner(once.cage, "test")->GetLevel(0)));
+        EXPECT_FALSE(hasOpenFolds(makeRefiner(twice.cage, "test")->GetLevel(0)));
+        const SubdivisionSurface surface = tessellate(cage, 4, "doubled");
+        EXPECT_LT(worstDistance(surface, limitPoints(cage, 7)), 2e-3f);
+        // What OpenSubdiv read there was whatever lay in memory: once would not be enough.
+        for (int round = 0; round < 20; ++round)
+            EXPECT_EQ(tessellate(cage, 4, "doubled").mesh.positions, surface.mesh.positions);
+    }
+}
+
+TEST(SubdivisionFolds, CreasesBetweenManyTriangles) {
+    EXPECT_FALSE(hasCrowdedCreases(makeRefiner(cageOf(creasedCones(20), "few"), "test")->GetLevel(0)));
+    for (const int sides : {40, 200}) {
+        const SubdivisionCage cage = cageOf(creasedCones(sides), "cones");
+        EXPECT_TRUE(hasCrowdedCreases(makeRefiner(cage, "test")->GetLevel(0)));
+        EXPECT_FALSE(hasCrowdedCreases(makeRefiner(refineOnce(cage, "test").cage, "test")->GetLevel(0)));
+        EXPECT_LT(worstDistance(tessellate(cage, 2, "cones"), limitPoints(cage, 3)), 1e-4f);
+    }
 }
 
 }  // namespace
