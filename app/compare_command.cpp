@@ -15,7 +15,7 @@ MetricResults measureAll(const std::vector<const Metric*>& metrics, const ImageP
     for (const Metric* metric : metrics) {
         const bool map = maps.wanted() && metric->mapColours;
         results.emplace_back(metric, metric->measure(pair, map));
-        if (map) maps.add(metric->id, suffix, metric->mapColours, results.back().second.map);
+        if (map) maps.add(metric->id, suffix, MapRange(*metric), results.back().second.map);
     }
     return results;
 }

@@ -161,7 +161,7 @@ private:
             else if (follow && now.motion.empty()) none.reason = "the reference holds no layer motion";
             if (!none.reason.empty()) return addMeasurement(entry, id, none);
             const Measurement own = consecutive(pair, now, now.image, previous_.image, follow, maps_.wanted());
-            if (maps_.wanted()) maps_.add(id, suffix(number), "magma", own.map);
+            if (maps_.wanted()) maps_.add(id, suffix(number), {}, own.map);
             addMeasurement(entry, id, own);
             const double reference = consecutive(pair, now, now.reference, previous_.reference, follow, false).value;
             entry["details"][id]["reference"] = std::isfinite(reference) ? ordered_json(reference) : ordered_json();
@@ -175,7 +175,7 @@ private:
         if (!wanted_.lag) return;
         report_.lag = lag_.result();
         const Image map = lag_.map();
-        if (!map.empty() && maps_.wanted()) maps_.add("lag", "", "magma", map);
+        if (!map.empty() && maps_.wanted()) maps_.add("lag", "", {}, map);
     }
 
     const CompareOptions& options_;

@@ -4,21 +4,20 @@
 #include <string>
 #include <vector>
 
-#include "image/image.h"
+#include "measure/map_range.h"
 
 namespace lumi {
 
-/// The error maps of one `compare`: `<metric><suffix>.exr` as they are, and .png in false colour. All maps of a metric have
-/// one range of colours, from 0: to 1 for SSIM, MS-SSIM, both FLIPs and CPBD; else to the largest 99th percentile of a map
-/// (its largest value where that is 0; 1 where all are 0). So frames of a sequence can be laid beside each other.
+/// The error maps of one `compare`: `<metric><suffix>.exr` as they are, and .png in false colour. All maps of a metric share
+/// the range of a MapRange, so that frames of a sequence can be laid beside each other.
 class ErrorMaps {
 public:
     /// Makes the folder; an empty name: no maps are wanted. Throws Error(Usage), Error(Resources) if it cannot be made.
     explicit ErrorMaps(const std::filesystem::path& folder);
 
     bool wanted() const { return !folder_.empty(); }
-    /// Writes the .exr and notes the range; `map` has one channel.
-    void add(const std::string& metric, const std::string& suffix, const char* colours, const Image& map);
+    /// Writes the .exr and takes it up in the range, which begins as `empty`; `map` has one channel.
+    void add(const std::string& metric, const std::string& suffix, const MapRange& empty, const Image& map);
     /// Writes the pictures, when the ranges are known.
     void finish() const;
 
@@ -29,11 +28,10 @@ public:
 
 private:
     struct Maps {
-        std::string metric, colours;
-        float high = 0;
+        std::string metric;
+        MapRange range;
         std::vector<std::string> names;  ///< without extension
     };
-    static float highOf(const Maps& maps);
 
     std::filesystem::path folder_;
     std::vector<Maps> all_;

@@ -69,6 +69,7 @@ struct Metric {
     bool higherIsBetter;
     bool symmetric;          ///< measure(a, b) == measure(b, a)
     const char* mapColours;  ///< colour map for its error map, nullptr without one
+    bool unitMap;            ///< its map goes from 0, no difference, to 1, a complete one
     Measurement (*measure)(const ImagePair& pair, bool wantMap);
     const char* range;       ///< interval of its values: "[0, 1]"
     const char* source;      ///< the paper's key in the README, or the field's usual definition

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "image/hdr.h"
+#include "measure/map_range.h"
 
 namespace lumi {
 namespace {
@@ -241,7 +242,7 @@ LiveMeasurement LiveMetrics::measure(const Snapshot& snapshot, const Held& refer
         }
         if (!map.empty()) maps.push_back(findMetric(map).measure(pair, true).map);
     }
-    if (!map.empty() && maps.size() == result.panes.size()) showMaps(maps, findMetric(map).mapColours, result.panes);
+    if (!map.empty() && maps.size() == result.panes.size()) showMaps(findMetric(map), maps, result.panes);
     result.ms = timer.elapsedMs();
     return result;
 }
@@ -265,21 +266,13 @@ void LiveMetrics::note(const LiveMeasurement& measurement) {
     curves_ = std::move(curves);
 }
 
-void showMaps(const std::vector<Image>& maps, const char* colourMap, std::vector<PaneMeasurement>& panes) {
-    const char* colours = colourMap ? colourMap : "magma";
-    DisplaySettings settings;
-    float high = 0;
-    for (const Image& map : maps) {
-        Image8 pixels;
-        if (!map.empty()) high = std::max(high, convert(map, "Y", colours, settings, pixels).high);
-    }
-    settings.autoRange = false;
-    settings.low = 0;
-    settings.high = high > 0 ? high : 1;
+void showMaps(const Metric& metric, const std::vector<Image>& maps, std::vector<PaneMeasurement>& panes) {
+    MapRange range(metric);
+    for (const Image& map : maps) range.add(map);
     for (size_t i = 0; i < maps.size(); ++i) {
         if (maps[i].empty()) continue;
         auto pixels = std::make_shared<Image8>();
-        panes[i].mapInfo = convert(maps[i], "Y", colours, settings, *pixels);
+        panes[i].mapInfo = convert(maps[i], "Y", "none", range.display(), *pixels);
         panes[i].map = std::move(pixels);
     }
 }

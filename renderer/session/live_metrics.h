@@ -107,7 +107,7 @@ private:
     std::jthread maker_, thread_;
 };
 
-/// Puts the error maps of several panes into them as pictures over one common range, from 0 on.
-void showMaps(const std::vector<Image>& maps, const char* colourMap, std::vector<PaneMeasurement>& panes);
+/// Puts the error maps of several panes into them as pictures over one common range: see MapRange.
+void showMaps(const Metric& metric, const std::vector<Image>& maps, std::vector<PaneMeasurement>& panes);
 
 }  // namespace lumi

@@ -7,7 +7,7 @@
 
 #include "frame/display.h"
 #include "image/exr.h"
-#include "measure/measure.h"
+#include "measure/map_range.h"
 #include "study/run_job.h"
 
 namespace lumi {
@@ -78,19 +78,6 @@ void measureImage(const Metric& metric, ImagePair pair, const std::vector<CropBo
     }
 }
 
-/// The value below which 99 of 100 pixels of the maps are; FLIP's maps are made for [0,1].
-float highOf(const Metric& metric, const std::vector<Image>& maps) {
-    if (std::string(metric.id).find("flip") != std::string::npos) return 1;
-    std::vector<float> values;
-    for (const Image& map : maps)
-        for (size_t i = 0; i < map.size(); i += 3)
-            if (std::isfinite(map.data()[i])) values.push_back(map.data()[i]);
-    if (values.empty()) return 1;
-    const auto place = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 99 / 100);
-    std::nth_element(values.begin(), place, values.end());
-    return std::max(*place, 1e-6f);
-}
-
 }  // namespace
 
 CropBox cropBox(const StudyFigure::Crop& crop, Extent2 extent) {
@@ -121,9 +108,8 @@ FigureContent figureContent(const Study& study, const StudyPlan& plan, const Stu
             rows[row.method].push_back(&row);
 
     const Metric& metric = findMetric(figure.metric);
-    DisplaySettings colours, maps;
+    DisplaySettings colours;
     colours.curve = ToneCurve::Clamp;
-    maps.colourMap = metric.mapColours, maps.autoRange = false, maps.low = 0;
     std::vector<Image> errors;
     for (const size_t method : methodsOf(study, plan, figure)) {
         if (!rows.contains(method)) continue;
@@ -146,8 +132,10 @@ FigureContent figureContent(const Study& study, const StudyPlan& plan, const Stu
         }
         content.columns.push_back(std::move(column));
     }
-    maps.high = content.mapHigh = highOf(metric, errors);
-    for (size_t i = 0; i < errors.size(); ++i) content.columns[i].map = shown(errors[i], "Y", maps);
+    MapRange range(metric);
+    for (const Image& map : errors) range.add(map);
+    content.mapHigh = range.high();
+    for (size_t i = 0; i < errors.size(); ++i) content.columns[i].map = shown(errors[i], "Y", range.display());
     return content;
 }
 

@@ -7,7 +7,7 @@
 #include "frame/display.h"
 #include "image/exr.h"
 #include "image/png.h"
-#include "measure/measure.h"
+#include "measure/map_range.h"
 #include "study/report.h"
 
 namespace lumi {
@@ -24,18 +24,6 @@ std::string pngUri(const Image& image, const char* channels, const DisplaySettin
 }
 
 Image readColour(const std::filesystem::path& path) { return readExr(path).image("", "RGB"); }
-
-/// The value below which 99 of 100 pixels of the maps are.
-double highOf(const std::vector<Image>& maps) {
-    std::vector<float> values;
-    for (const Image& map : maps)
-        for (size_t i = 0; i < map.size(); i += 7)
-            if (std::isfinite(map.data()[i])) values.push_back(map.data()[i]);
-    if (values.empty()) return 1;
-    const auto place = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 99 / 100);
-    std::nth_element(values.begin(), place, values.end());
-    return std::max(*place, 1e-6f);
-}
 
 std::string hexColour(const Vec3& colour) {
     const auto byte = [](float v) { return static_cast<int>(std::lround(std::clamp(v, 0.0f, 1.0f) * 255)); };
@@ -74,12 +62,9 @@ Json pictureSet(const Study& study, const StudyPlan& plan, const StudyRecords& r
     }
     images.push_back({{"name", "Reference"}, {"kind", "reference"}, {"png", pngUri(reference, "RGB", colours)}});
 
-    DisplaySettings map;
-    map.colourMap = metric.mapColours;
-    map.autoRange = false;
-    map.low = 0;
-    // FLIP is made for a map over [0,1]; errors without a scale of their own share one.
-    map.high = std::string(metric.id).find("flip") != std::string::npos ? 1.0f : static_cast<float>(highOf(maps));
+    MapRange range(metric);
+    for (const Image& map : maps) range.add(map);
+    const DisplaySettings map = range.display();
     for (size_t i = 0; i < rows.size(); ++i) {
         const std::string& name = plan.methods[rows[i]->method].name;
         images.push_back({{"name", name + " error"}, {"title", name + " · " + metric.title}, {"kind", "error"}, {"of", name},
