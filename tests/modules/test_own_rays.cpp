@@ -255,7 +255,7 @@ TEST(StablePromises, NoSampleOfALampIsBlack) {
         forVisible(module.samples(), [&](uint32_t i) {
             if (module.samples().locations[i].isSky() || module.samples().locations[i].instance != 3) return;
             ++onLamp;
-            EXPECT_GT(module.samples().lights[i].direct.x, 10) << "frame " << frame;
+            EXPECT_GT(module.samples().direct[i].x, 10) << "frame " << frame;
         });
         EXPECT_GT(onLamp, 20);
     }
@@ -390,8 +390,8 @@ TEST(StablePromises, AStoppedLightLeavesNothingBehind) {
     for (FrameNumber frame = 8; frame < 12; ++frame)
         ASSERT_EQ(player.run(module, frame, dim, view(), view(), {}), RunResult::Completed);
     forVisible(module.samples(), [&](uint32_t i) {
-        EXPECT_LT(maxComponent(module.samples().lights[i].radiance()), 0.2f);  // the sky's 0.1 and its bounces
-        EXPECT_LE(module.samples().lights[i].indirectCount, 4);
+        EXPECT_LT(maxComponent(module.samples().radiance(i)), 0.2f);  // the sky's 0.1 and its bounces
+        EXPECT_LE(module.samples().notes[i].indirectCount, 4);
     });
 }
 

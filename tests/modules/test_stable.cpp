@@ -108,8 +108,12 @@ TEST(Stable, KeepsItsDensityWhileTheCameraMoves) {
                 const uint32_t count = samples.first[p + 1] - samples.first[p];
                 ASSERT_EQ(count, static_cast<uint32_t>(std::popcount(subpixel::occupied(samples.words[p]))));
                 ASSERT_LE(count, 16u);
-                for (uint32_t i = samples.first[p]; i < samples.first[p + 1]; ++i)
+                for (uint32_t i = samples.first[p]; i < samples.first[p + 1]; ++i) {
                     ASSERT_EQ(static_cast<size_t>(samples.places[i].y) * 120 + static_cast<size_t>(samples.places[i].x), p);
+                    if (!samples.locations[i].isNew()) {
+                        ASSERT_EQ(samples.inWorld[i], placeInWorld(rig.tracer, samples.locations[i]));
+                    }
+                }
             }
         }
         EXPECT_NEAR(meanVisible(module.samples()), density, 0.15 * density);
@@ -167,7 +171,7 @@ TEST(Stable, SamplesStayOnWhatDeforms) {
     int deforming = 0, moved = 0;
     for (size_t i = 0; i < now.size(); ++i) {
         const SampleLocation& l = now.locations[i];
-        if (now.lights[i].age == 0 || l.isNew() || l.isSky() || !after->instances[l.instance].deformed) continue;
+        if (now.notes[i].age == 0 || l.isNew() || l.isSky() || !after->instances[l.instance].deformed) continue;
         ++deforming;
         EXPECT_TRUE(known.count({l.instance, l.primitive, std::bit_cast<uint32_t>(l.u), std::bit_cast<uint32_t>(l.v)}));
         // Where the vertices of now put it, found without the tracer.
@@ -178,6 +182,7 @@ TEST(Stable, SamplesStayOnWhatDeforms) {
             return Vec2(pose.project(transformPoint(posed.instances[l.instance].worldFromObject, p[t.x] * (1 - l.u - l.v) + p[t.y] * l.u + p[t.z] * l.v)));
         };
         EXPECT_LT(glm::distance(now.places[i], place(*after)), 0.01f);
+        EXPECT_EQ(now.inWorld[i], placeInWorld(rig.tracer, l));
         moved += glm::distance(place(*after), place(*before)) > 0.05f;
     }
     EXPECT_GT(deforming, 20);
@@ -226,7 +231,7 @@ TEST(Stable, HiddenSamplesForgetLightThatIsNoMore) {
             for (size_t p = 0; p < samples.words.size(); ++p) {
                 uint32_t i = samples.first[p];
                 for (uint32_t bits = subpixel::occupied(samples.words[p]); bits; bits &= bits - 1, ++i)
-                    count += !(subpixel::visible(samples.words[p]) & bits & (~bits + 1)) && samples.lights[i].indirectCount > 0;
+                    count += !(subpixel::visible(samples.words[p]) & bits & (~bits + 1)) && samples.notes[i].indirectCount > 0;
             }
             return count;
         };
@@ -250,7 +255,7 @@ TEST(Stable, SkyHasSamplesThatTurnWithTheCamera) {
     for (FrameNumber frame = 0; frame < 4; ++frame)
         image = rig.run(module, frame, posed, lookFrom(Vec3(0), Vec3(0.01f * static_cast<float>(frame), 0, -1)), {.camera = true});
     int old = 0;
-    for (const SampleLight& light : module.samples().lights) old += light.age == 3;
+    for (const SampleNote& note : module.samples().notes) old += note.age == 3;
     EXPECT_GT(old, 1700);
     for (size_t p = 0; p < 2400; ++p) ASSERT_NEAR(image.plane(2).data[p], 0.75f, 1e-5f);
 }
@@ -280,7 +285,7 @@ TEST(Stable, AnOrthographicCameraWorks) {
         camera.eye.x += 0.02f, camera.target.x += 0.02f;
         rig.run(module, frame, balls().pose(), camera, {.camera = true});
     }
-    for (const SampleLight& light : module.samples().lights) kept += light.age == 3;
+    for (const SampleNote& note : module.samples().notes) kept += note.age == 3;
     EXPECT_GT(kept, 1500);
 }
 

@@ -8,6 +8,8 @@
 #include "math/hash.h"
 #include "reconstruct/stable/analysis.h"
 #include "reconstruct/stable/analysis_kernels.h"
+#include "reconstruct/stable/projection_kernels.h"
+#include "reconstruct/stable/reproject_samples.h"
 #include "reconstruct/stable/shading.h"
 #include "reconstruct/stable/stable_taps.h"
 
@@ -139,22 +141,71 @@ TEST(StableAnalysis, NewSamplesLieInTheirSubpixelAtTheStratumsMiddle) {
         }
 }
 
+// Many at a time as one by one, on every instruction set: in front of the camera and behind it, off the screen, in the sky,
+// and those that have no place at all.
+TEST(StableReprojection, KernelsFindWhatIsFoundOneByOne) {
+    constexpr uint32_t kCount = 1000;
+    std::vector<SampleLocation> locations(kCount);
+    std::vector<Vec3> inWorld(kCount);
+    std::vector<uint8_t> flags(kCount);
+    for (uint32_t i = 0; i < kCount; ++i) {
+        const auto draw = [&](uint32_t k) { return 2 * unitFloat(hashCombine(i, k, 31)) - 1; };
+        inWorld[i] = Vec3(3 * draw(0), 2 * draw(1), 4 * draw(2));
+        const bool sky = i % 5 == 0;
+        locations[i] = sky ? SampleLocation::ofSky(inWorld[i]) : SampleLocation{1, i, 0, 0};
+        flags[i] = static_cast<uint8_t>((sky ? SampleSet::kSky : 0) | (i % 3 == 0 ? SampleSet::kOccluded : 0));
+        if (i % 17 == 0) inWorld[i] = Vec3(NAN);
+    }
+    Camera camera;
+    camera.eye = Vec3(0, 0, 3), camera.target = Vec3(0);
+    for (const Projection projection : {Projection::Perspective, Projection::Orthographic}) {
+        camera.projection = projection;
+        const ScreenPlaces screen(poseCamera(camera, {75, 41}));
+        std::vector<Vec2> places(kCount);
+        std::vector<uint32_t> targets(kCount), rows(kCount);
+        ProjectionRow row;
+        screen.describe(row);
+        row.inWorld = &inWorld[0].x, row.flags = flags.data(), row.count = kCount, row.nowhere = 41;
+        row.places = &places[0].x, row.targets = targets.data(), row.rows = rows.data();
+        const Isa best = activeIsa();
+        for (const Isa isa : {Isa::Baseline, Isa::V3, Isa::V4}) {
+            if (isa > best) continue;
+            setIsa(isa);
+            projectionKernels().project(row);
+            int found = 0;
+            for (uint32_t i = 0; i < kCount; ++i) {
+                Vec2 place(0);
+                float depth = 0;
+                const bool there = screen.find(locations[i], inWorld[i], place, depth);
+                ASSERT_EQ(rows[i], there ? static_cast<uint32_t>(place.y) : 41) << i;
+                if (!there) continue;
+                ++found;
+                EXPECT_EQ(places[i], place);
+                const auto sub = static_cast<uint32_t>(at(place - glm::floor(place)));
+                EXPECT_EQ(targets[i], (static_cast<uint32_t>(place.x) * 16 + sub) | (i % 3 == 0 ? 1u << 31 : 0));
+            }
+            EXPECT_GT(found, 50);
+        }
+        setIsa(best);
+    }
+}
+
 TEST(StableGathering, MovingAverageAndMean) {
     GatheringSettings settings;
     settings.indirectAlpha = 0.25f;
-    SampleLight light;
+    Vec3 average(0);
+    uint16_t paths = 0;
     double expected = 0;
     for (int n = 1; n <= 12; ++n) {
-        gather(light, Vec3(static_cast<float>(n)), Vec3(static_cast<float>(n * n)), false, settings);
+        addToAverage(average, paths, Vec3(static_cast<float>(n * n)), false, settings);
         expected += (n * n - expected) * std::max(0.25, 1.0 / n);
-        EXPECT_NEAR(light.indirect.x, expected, 1e-4) << n;
-        EXPECT_EQ(light.direct.x, static_cast<float>(n));  // that of the frame
+        EXPECT_NEAR(average.x, expected, 1e-4) << n;
     }
     // Still: from there on as many as the moving average is worth, and one more each.
     const double start = expected, startCount = 4;
-    for (int n = 1; n <= 20; ++n) gather(light, Vec3(2), Vec3(7), true, settings);
-    EXPECT_NEAR(light.indirect.x, (start * startCount + 7 * 20) / (startCount + 20), 1e-4);
-    EXPECT_NEAR(light.direct.x, (12 + 2 * 20) / 21.0, 1e-5);
+    for (int n = 1; n <= 20; ++n) addToAverage(average, paths, Vec3(7), true, settings);
+    EXPECT_NEAR(average.x, (start * startCount + 7 * 20) / (startCount + 20), 1e-4);
+    EXPECT_EQ(paths, 24);
 }
 
 // Section 4.4 as a double loop over all samples and pixels.

@@ -1,91 +1,102 @@
 #include "reconstruct/stable/reproject_samples.h"
 
-#include <cmath>
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <utility>
 
 #include "base/parallel.h"
+#include "reconstruct/stable/projection_kernels.h"
 #include "trace/tracer.h"
 
 namespace lumi {
 namespace {
 
-constexpr int64_t kPixels = 1 << 12, kChunk = 1 << 14;
+constexpr int64_t kChunk = 1 << 14;  ///< samples that are counted together
+constexpr size_t kRun = 1 << 10;     ///< and those that stay in the nearest cache meanwhile
 
-size_t slotOf(uint32_t target) { return target & ~ReprojectedSamples::kOccluded; }
+/// Are surfaces where they were in the frame before?
+bool standsStill(const FrameContext& context, const SampleSet& previous) {
+    const Changes& changes = context.changes;
+    return !changes.cut && !changes.objects && !changes.lights && previous.scene.lock() == context.scene.scene;
+}
 
-/// Where each sample lands, and whether it was occluded.
-void project(const FrameContext& context, const SampleSet& previous, ReprojectedSamples& out) {
-    const CameraPose& camera = context.camera;
-    const bool still = !context.changes.any();
-    const auto width = static_cast<uint32_t>(camera.extent.width);
-    const ScreenPlaces screen(camera);
-    const auto targetOf = [&](size_t i) -> uint32_t {
+/// Where samples [begin, end) are in the world now.
+void place(const Tracer& tracer, const SampleSet& previous, size_t begin, size_t end, std::vector<Vec3>& inWorld) {
+    for (size_t i = begin; i < end; ++i) {
         const SampleLocation& location = previous.locations[i];
-        Vec2& place = out.places[i];
-        if (!location.isSky() && !context.tracer.has(location.point())) return ReprojectedSamples::kNowhere;
-        out.inWorld[i] = placeInWorld(context.tracer, location);
-        if (still) place = previous.places[i];
-        else if (float depth; !screen.find(location, out.inWorld[i], place, depth)) return ReprojectedSamples::kNowhere;
-        const auto x = static_cast<uint32_t>(place.x), y = static_cast<uint32_t>(place.y);
-        return (y * width + x) * subpixel::kCount + static_cast<uint32_t>(subpixel::at(place - Vec2(x, y)));
-    };
-    parallelRanges(previous.extent.area(), kPixels, [&](int64_t begin, int64_t end) {
-        for (auto pixel = static_cast<size_t>(begin); pixel < static_cast<size_t>(end); ++pixel) {
-            const uint32_t word = previous.words[pixel];
-            size_t i = previous.first[pixel];
-            for (uint32_t bits = subpixel::occupied(word); bits; bits &= bits - 1, ++i) {
-                const uint32_t target = targetOf(i);
-                const bool isOccluded = subpixel::occluded(word) & (bits & (~bits + 1));
-                out.targets[i] = isOccluded && target != ReprojectedSamples::kNowhere ? target | ReprojectedSamples::kOccluded : target;
-            }
+        const bool exists = location.isSky() || tracer.has(location.point());
+        inWorld[i] = exists ? placeInWorld(tracer, location) : Vec3(std::numeric_limits<float>::quiet_NaN());
+    }
+}
+
+/// Where each sample lands, and whether it was occluded; how many of each chunk land in each row.
+void project(const FrameContext& context, const SampleSet& previous, ReprojectedSamples& out) {
+    const auto rows = static_cast<size_t>(context.camera.extent.height);
+    const bool still = !context.changes.any(), moved = !out.moved.empty();
+    ProjectionRow all;
+    ScreenPlaces(context.camera).describe(all);
+    all.nowhere = static_cast<uint32_t>(rows);
+    parallelRanges(static_cast<int64_t>(previous.size()), kChunk, [&](int64_t chunk, int64_t chunkEnd) {
+        uint32_t* counts = out.counts.data() + static_cast<size_t>(chunk / kChunk) * (rows + 1);
+        for (auto begin = static_cast<size_t>(chunk); begin < static_cast<size_t>(chunkEnd); begin += kRun) {
+            const size_t end = std::min(begin + kRun, static_cast<size_t>(chunkEnd));
+            if (moved) place(context.tracer, previous, begin, end, out.moved);
+            ProjectionRow some = all;
+            some.count = static_cast<uint32_t>(end - begin);
+            some.inWorld = &(moved ? out.moved : previous.inWorld)[begin].x;
+            some.flags = &previous.flags[begin];
+            some.kept = still ? &previous.places[begin].x : nullptr;
+            some.places = &out.places[begin].x, some.targets = &out.targets[begin], some.rows = &out.rows[begin];
+            projectionKernels().project(some);
+            for (size_t i = begin; i < end; ++i) ++counts[out.rows[i]];
         }
     }, context.stop);
 }
 
-/// Samples by the row that they land in, in their order within it: a counting sort. Returns where the rows begin.
+/// Samples by the row that they land in, in their order within it, and those that land nowhere last: a counting sort. Returns
+/// where the rows begin.
 std::vector<uint32_t> sortByRow(Extent2 extent, ReprojectedSamples& out) {
     const auto count = static_cast<int64_t>(out.targets.size());
-    const int64_t chunks = (count + kChunk - 1) / kChunk;
-    const auto rows = static_cast<size_t>(extent.height), perRow = static_cast<size_t>(extent.width) * subpixel::kCount;
-    std::vector<uint32_t> counts(static_cast<size_t>(chunks) * rows, 0);  // of chunk and row
-    parallelRanges(count, kChunk, [&](int64_t begin, int64_t end) {
-        uint32_t* mine = counts.data() + static_cast<size_t>(begin / kChunk) * rows;
-        for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i)
-            if (out.targets[i] != ReprojectedSamples::kNowhere) ++mine[slotOf(out.targets[i]) / perRow];
-    });
+    const auto chunks = static_cast<size_t>((count + kChunk - 1) / kChunk), rows = static_cast<size_t>(extent.height);
     std::vector<uint32_t> rowBegins(rows + 1, 0);
     uint32_t sum = 0;
-    for (size_t row = 0; row < rows; ++row) {
+    for (size_t row = 0; row <= rows; ++row) {
         rowBegins[row] = sum;
-        for (size_t chunk = 0; chunk < static_cast<size_t>(chunks); ++chunk) {
-            const uint32_t n = counts[chunk * rows + row];
-            counts[chunk * rows + row] = sum;
-            sum += n;
-        }
+        for (size_t chunk = 0; chunk < chunks; ++chunk) sum += std::exchange(out.counts[chunk * (rows + 1) + row], sum);
     }
-    rowBegins[rows] = sum;
     out.order.resize(sum);
     parallelRanges(count, kChunk, [&](int64_t begin, int64_t end) {
-        uint32_t* next = counts.data() + static_cast<size_t>(begin / kChunk) * rows;
-        for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i)
-            if (out.targets[i] != ReprojectedSamples::kNowhere) out.order[next[slotOf(out.targets[i]) / perRow]++] = static_cast<uint32_t>(i);
+        uint32_t* next = out.counts.data() + static_cast<size_t>(begin / kChunk) * (rows + 1);
+        for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) out.order[next[out.rows[i]]++] = static_cast<uint32_t>(i);
     });
     return rowBegins;
 }
 
+/// Occupancy of four pixels, 16 bits each.
+uint64_t occupancyOf(const uint32_t* words, size_t count) {
+    uint64_t bits = 0;
+    for (size_t k = 0; k < count; ++k) bits |= static_cast<uint64_t>(subpixel::occupied(words[k])) << (subpixel::kCount * k);
+    return bits;
+}
+
 /// Algorithm 1 over what lands in a row, from `begin` to `end` of the order.
 void storeRow(size_t width, size_t row, uint32_t begin, uint32_t end, std::vector<uint32_t>& slots, ReprojectedSamples& out) {
-    uint32_t* words = out.words.data() + row * width;
+    uint32_t *words = out.words.data() + row * width, *first = out.first.data() + row * width, *sources = out.sources.data();
     for (uint32_t k = begin; k < end; ++k) {
-        const uint32_t source = out.order[k], target = out.targets[source];
-        const size_t slot = slotOf(target) - row * width * subpixel::kCount;
+        const uint32_t source = out.order[k], target = out.targets[source], slot = target & ~ReprojectedSamples::kOccluded;
         const bool isOccluded = target & ReprojectedSamples::kOccluded;
         if (subpixel::store(words[slot / subpixel::kCount], static_cast<int>(slot % subpixel::kCount), isOccluded)) slots[slot] = source;
     }
+    // Four pixels at a time, for most have none or one: what comes next is guessed wrong less often.
+    constexpr size_t kPixels = 4;
     uint32_t next = begin;
-    for (size_t x = 0; x < width; ++x) {
-        out.first[row * width + x] = next;
-        for (uint32_t bits = subpixel::occupied(words[x]); bits; bits &= bits - 1)
-            out.sources[next++] = slots[x * subpixel::kCount + static_cast<size_t>(std::countr_zero(bits))];
+    for (size_t x = 0; x < width; x += kPixels) {
+        const size_t count = std::min(kPixels, width - x);
+        uint32_t before = next;
+        for (size_t k = 0; k < count; ++k) first[x + k] = before, before += subpixel::count(subpixel::occupied(words[x + k]));
+        for (uint64_t bits = occupancyOf(words + x, count); bits; bits &= bits - 1)
+            sources[next++] = slots[x * subpixel::kCount + static_cast<size_t>(std::countr_zero(bits))];
     }
 }
 
@@ -110,11 +121,19 @@ bool ScreenPlaces::find(const SampleLocation& location, const Vec3& inWorld, Vec
     return place.x >= 0 && place.y >= 0 && place.x < size_.x && place.y < size_.y;
 }
 
+void ScreenPlaces::describe(ProjectionRow& row) const {
+    for (int c = 0; c < 4; ++c)
+        for (int k = 0; k < 3; ++k) row.view[3 * c + k] = view_[c][k];
+    for (int k = 0; k < 2; ++k) row.centre[k] = centre_[k], row.size[k] = size_[k];
+    row.inverseSize = inverseSize_, row.perspective = perspective_;
+}
+
 bool reprojectSamples(const FrameContext& context, const SampleSet& previous, ReprojectedSamples& out) {
     const Extent2 extent = context.camera.extent;
-    out.places.resize(previous.size());
-    out.inWorld.resize(previous.size());
-    out.targets.resize(previous.size());
+    out.places.resize(previous.size()), out.targets.resize(previous.size()), out.rows.resize(previous.size());
+    out.moved.resize(standsStill(context, previous) ? 0 : previous.size());
+    const auto chunks = (static_cast<int64_t>(previous.size()) + kChunk - 1) / kChunk;
+    out.counts.assign(static_cast<size_t>(chunks * (extent.height + 1)), 0);
     project(context, previous, out);
     if (context.stop.stop_requested()) return false;
     const std::vector<uint32_t> rowBegins = sortByRow(extent, out);

@@ -4,27 +4,33 @@
 
 namespace lumi {
 
+struct ProjectionRow;
+
 /// Where the samples of the frame before have gone [DalCorso17, sec. 4.1].
 struct ReprojectedSamples {
     std::vector<uint32_t> words;    ///< a pixel of this frame: occupancy, and occlusion as it was in the frame before
     std::vector<uint32_t> first;    ///< a pixel: where in `sources` its samples begin; those of a pixel follow each other
     std::vector<uint32_t> sources;  ///< index in the frame before, in the order of a pixel's sub-pixels
     std::vector<Vec2> places;       ///< of each sample of the frame before on this frame's screen
-    std::vector<Vec3> inWorld;      ///< of each; see placeInWorld()
+    std::vector<Vec3> moved;        ///< where they are in the world, if they may be elsewhere than in the frame before; else empty
 
     // Scratch, kept for its memory.
-    std::vector<uint32_t> targets;  ///< of each sample: 16 * pixel + sub-pixel, with kOccluded if it was; or kNowhere
+    std::vector<uint32_t> targets;  ///< of each sample: 16 * column + sub-pixel, with kOccluded if it was
+    std::vector<uint32_t> rows;     ///< that each lands in; of those that land nowhere the number of rows
     std::vector<uint32_t> order;    ///< samples by the row they land in
-    static constexpr uint32_t kNowhere = ~0u, kOccluded = 1u << 31;
+    std::vector<uint32_t> counts;   ///< of each part of the samples in each row
+    static constexpr uint32_t kOccluded = 1u << 31;
     size_t bytes() const {
-        return 4 * (words.size() + first.size() + sources.size() + targets.size() + order.size()) + (sizeof(Vec2) + sizeof(Vec3)) * places.size();
+        return 4 * (words.size() + first.size() + sources.size() + targets.size() + rows.size() + order.size() + counts.size()) +
+               sizeof(Vec2) * places.size() + sizeof(Vec3) * moved.size();
     }
 };
 
 /// Projects every sample of `previous` to where its surface point is now and stores it there by Algorithm 1, in the order
 /// in which the samples lie, so that which of two stays never depends on threads. Samples off the image, behind the
 /// camera, of surfaces that the scene no longer has or that have shrunk to nothing a number can name are dropped. Where
-/// nothing has changed since the frame before samples stay in their places, to the bit.
+/// nothing has changed since the frame before samples stay in their places, to the bit; where only the camera or the light has,
+/// they stay where they were in the world.
 /// Returns false if stopped.
 bool reprojectSamples(const FrameContext& context, const SampleSet& previous, ReprojectedSamples& out);
 
@@ -37,6 +43,8 @@ public:
     explicit ScreenPlaces(const CameraPose& camera);
     /// Continuous pixel and view depth, m (of the sky: of its unit direction); false if the sample is not on the screen.
     bool find(const SampleLocation& location, const Vec3& inWorld, Vec2& place, float& depth) const;
+    /// The same for many samples at a time: fills in what projectionKernels() ask of the camera.
+    void describe(ProjectionRow& row) const;
 
 private:
     Mat4 view_;

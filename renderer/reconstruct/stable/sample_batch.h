@@ -10,20 +10,21 @@ struct SampleBatch {
     static constexpr uint32_t kIdle = ~0u;  ///< slot of a ray that is not there
     static constexpr size_t kMost = 1024;   ///< starts, and samples: as many as the tracer keeps together
 
-    struct Pixel {
-        uint32_t pixel = 0, slot = 0;  ///< and the slot of its first sample
+    /// Neighbouring pixels of a row; their samples follow each other in the set and in the batch.
+    struct Run {
+        uint32_t pixel = 0, count = 0;
+        uint32_t slot = 0;  ///< of its first sample
     };
-    size_t pixelCount = 0, sampleCount = 0, startCount = 0;
-    Pixel pixels[kMost];      ///< that have samples
+    size_t runCount = 0, sampleCount = 0, startCount = 0;
+    Run runs[kMost];
     uint32_t samples[kMost];  ///< by slot: index in the set
-    Vec3 inWorld[kMost];      ///< by slot: position, or direction into the sky; not set for new ones
     float distances[kMost];   ///< by slot; of samples with a start
     uint16_t startOf[kMost];  ///< by slot; of samples with a start
     PathStart starts[kMost];
     Vec3 radiance[kMost];                     ///< by start
     Vec3 direct[kMost], diffuseShare[kMost];  ///< by slot
 
-    void clear() { pixelCount = sampleCount = startCount = 0; }
+    void clear() { runCount = sampleCount = startCount = 0; }
 };
 
 }  // namespace lumi

@@ -1,4 +1,4 @@
-#include "reconstruct/stable/sample_batch.h"
+#include "reconstruct/stable/sample_frame.h"
 
 #include <utility>
 
@@ -8,8 +8,6 @@
 
 namespace lumi {
 namespace {
-
-constexpr size_t kBytesASample = sizeof(SampleLocation) + sizeof(Vec2) + sizeof(SampleLight);
 
 uint32_t keptOf(const SampleFrame& frame, size_t pixel) {
     return subpixel::occupied(frame.reprojected.words[pixel]) & ~frame.changes[pixel].removed & ~frame.changes[pixel].added;
@@ -43,71 +41,99 @@ uint32_t beginPixels(SampleFrame& frame, SampleSet& next) {
 
 }  // namespace
 
-size_t SampleFrame::bytes() const {
-    return colours.size() * (sizeof(Vec3) + 2) + motions.size() * sizeof(Vec2) + changes.size() * sizeof(PixelChange) + reprojected.bytes() + chunkSums.size() * 4;
+void SampleSet::resize(size_t count, bool withIndirect) {
+    locations.resize(count), inWorld.resize(count), places.resize(count), flags.resize(count), notes.resize(count);
+    direct.resize(count), indirect.resize(withIndirect ? count : 0);
 }
 
-void numberSamples(SampleFrame& frame, SampleSet& next) {
+size_t SampleFrame::bytes() const {
+    return colours.size() * sizeof(Vec3) + verdicts.size() * 2 + motions.size() * sizeof(Vec2) + changes.size() * sizeof(PixelChange) + reprojected.bytes() + chunkSums.size() * 4;
+}
+
+void numberSamples(SampleFrame& frame, bool withIndirect, SampleSet& next) {
     const uint32_t sum = beginPixels(frame, next);
     const size_t more = sum > next.locations.capacity() ? sum - next.locations.capacity() : 0;
-    if (more > 0) checkMemory("the samples of stable ray tracing", more * kBytesASample);
-    next.locations.resize(sum), next.places.resize(sum), next.lights.resize(sum);
+    if (more > 0) checkMemory("the samples of stable ray tracing", more * SampleSet::bytesASample(withIndirect));
+    next.resize(sum, withIndirect);
     frame.motions.resize(frame.wantsMotions ? sum : 0), frame.verdicts.resize(sum);
-    frame.hidden.resize(sum), frame.colours.resize(sum);
+    frame.hidden.resize(sum), frame.colours.resize(withIndirect ? sum : 0);
 }
 
-SampleGatherer::SampleGatherer(const SampleSet& previous, const DensitySettings& settings, uint32_t random, SampleFrame& frame, SampleSet& next)
+SampleGatherer::SampleGatherer(const SampleSet& previous, const DensitySettings& settings, uint32_t random, bool keepsDirect, SampleFrame& frame,
+                               SampleSet& next)
     : jitter_(settings.jitter), random_(random), width_(static_cast<uint32_t>(next.extent.width)),
       reprojectedWords_(frame.reprojected.words.data()), reprojectedFirst_(frame.reprojected.first.data()),
       sources_(frame.reprojected.sources.data()), changes_(frame.changes.data()), oldLocations_(previous.locations.data()),
-      oldLights_(previous.lights.data()), oldPlaces_(previous.places.data()), newPlaces_(frame.reprojected.places.data()),
-      inWorld_(frame.reprojected.inWorld.data()), first_(next.first.data()), words_(next.words.data()),
-      locations_(next.locations.data()), places_(next.places.data()), lights_(next.lights.data()),
-      motions_(frame.wantsMotions ? frame.motions.data() : nullptr), verdicts_(frame.verdicts.data()), hidden_(frame.hidden.data()),
-      colours_(frame.colours.data()) {}
+      oldInWorld_((frame.reprojected.moved.empty() ? previous.inWorld : frame.reprojected.moved).data()),
+      oldDirect_(keepsDirect ? previous.direct.data() : nullptr),
+      oldIndirect_(previous.indirect.empty() ? nullptr : previous.indirect.data()), oldNotes_(previous.notes.data()),
+      oldFlags_(previous.flags.data()), oldPlaces_(previous.places.data()), newPlaces_(frame.reprojected.places.data()),
+      first_(next.first.data()), words_(next.words.data()), locations_(next.locations.data()), inWorld_(next.inWorld.data()),
+      direct_(next.direct.data()), indirect_(next.indirect.empty() ? nullptr : next.indirect.data()), places_(next.places.data()),
+      flags_(next.flags.data()), notes_(next.notes.data()), motions_(frame.wantsMotions ? frame.motions.data() : nullptr),
+      verdicts_(frame.verdicts.data()), hidden_(frame.hidden.data()) {}
 
-void SampleGatherer::prefetch(uint32_t pixel) const {
-    const uint32_t count = subpixel::count(subpixel::occupied(reprojectedWords_[pixel]));
-    for (uint32_t k = 0; k < count; ++k) {
-        const uint32_t source = sources_[reprojectedFirst_[pixel] + k], i = first_[pixel] + k;
-        __builtin_prefetch(oldLights_ + source);
+void SampleGatherer::prefetch(uint32_t pixel, uint32_t count) const {
+    const uint32_t last = pixel + count - 1;
+    const uint32_t end = reprojectedFirst_[last] + subpixel::count(subpixel::occupied(reprojectedWords_[last]));
+    for (uint32_t k = reprojectedFirst_[pixel]; k < end; k += 4) {
+        const uint32_t source = sources_[k];
         __builtin_prefetch(oldLocations_ + source);
+        __builtin_prefetch(oldNotes_ + source);
+        __builtin_prefetch(oldInWorld_ + source);
         __builtin_prefetch(newPlaces_ + source);
-        __builtin_prefetch(inWorld_ + source);
-        __builtin_prefetch(lights_ + i, 1);
-        __builtin_prefetch(locations_ + i, 1);
-        __builtin_prefetch(places_ + i, 1);
-        __builtin_prefetch(colours_ + i, 1);
+        if (oldIndirect_) __builtin_prefetch(oldIndirect_ + source);
     }
 }
 
-void SampleGatherer::gather(uint32_t pixel, SampleBatch& batch) const {
-    const uint32_t word = reprojectedWords_[pixel], added = changes_[pixel].added;
-    const uint32_t kept = subpixel::occupied(word) & ~changes_[pixel].removed & ~added;
-    words_[pixel] = kept | added;
-    if (!(kept | added)) return;
-    uint32_t i = first_[pixel];
-    size_t slot = batch.sampleCount;
-    batch.pixels[batch.pixelCount++] = {pixel, static_cast<uint32_t>(slot)};
-    const uint32_t* sources = sources_ + reprojectedFirst_[pixel];
-    for (uint32_t bits = kept | added; bits; bits &= bits - 1, ++i, ++slot) {
-        const uint32_t bit = bits & (~bits + 1);
-        batch.samples[slot] = i;
-        hidden_[i] = 0;
-        if (added & bit) {
-            addNew(pixel, std::countr_zero(bits), i);
+void SampleGatherer::gather(uint32_t pixel, uint32_t count) const {
+    // Most pixels keep what they have: their samples follow each other.
+    const uint32_t end = pixel + count;
+    for (uint32_t begin = pixel; begin < end;) {
+        if ((changes_[begin].added | changes_[begin].removed) != 0) {
+            gatherChanged(begin++);
             continue;
         }
-        const uint32_t source = sources[subpixel::count(subpixel::occupied(word) & (bit - 1))];
-        locations_[i] = oldLocations_[source];
-        places_[i] = newPlaces_[source];
-        lights_[i] = oldLights_[source];
-        if (lights_[i].age < 0xFFFF) ++lights_[i].age;
-        if (motions_) motions_[i] = oldPlaces_[source] - newPlaces_[source];
-        verdicts_[i] = subpixel::occluded(word) & bit ? Verdict::Occluded : Verdict::Visible;
-        batch.inWorld[slot] = inWorld_[source];
+        uint32_t next = begin;
+        for (; next < end && (changes_[next].added | changes_[next].removed) == 0; ++next) words_[next] = subpixel::occupied(reprojectedWords_[next]);
+        const uint32_t* source = sources_ + reprojectedFirst_[begin];
+        for (size_t i = first_[begin]; i < first_[next]; ++i) keep(*source++, i);
+        begin = next;
     }
-    batch.sampleCount = slot;
+}
+
+/// One that loses samples or gets new ones.
+void SampleGatherer::gatherChanged(uint32_t pixel) const {
+    const uint32_t occupied = subpixel::occupied(reprojectedWords_[pixel]), added = changes_[pixel].added;
+    const uint32_t all = (occupied & ~changes_[pixel].removed) | added;
+    words_[pixel] = all;
+    const uint32_t* source = sources_ + reprojectedFirst_[pixel];
+    size_t i = first_[pixel];
+    for (uint32_t bits = occupied | all; bits; bits &= bits - 1) {
+        const uint32_t bit = bits & (~bits + 1);
+        const uint32_t* const here = occupied & bit ? source++ : nullptr;
+        if (added & bit) addNew(pixel, std::countr_zero(bit), i++);
+        else if (all & bit) keep(*here, i++);
+    }
+}
+
+/// A sample of the frame before.
+void SampleGatherer::keep(uint32_t source, size_t i) const {
+    locations_[i] = oldLocations_[source];
+    inWorld_[i] = oldInWorld_[source];
+    places_[i] = newPlaces_[source];
+    SampleNote note = oldNotes_[source];
+    note.age = static_cast<uint16_t>(note.age + (note.age < 0xFFFF));
+    if (oldDirect_) direct_[i] = oldDirect_[source];
+    else note.directCount = 0;
+    if (indirect_) indirect_[i] = oldIndirect_ ? oldIndirect_[source] : Vec3(0);
+    if (!oldIndirect_) note.indirectCount = 0;
+    notes_[i] = note;
+    if (motions_) motions_[i] = oldPlaces_[source] - newPlaces_[source];
+    const uint8_t flags = oldFlags_[source];
+    verdicts_[i] = flags & SampleSet::kOccluded ? Verdict::Occluded : Verdict::Visible;
+    flags_[i] = flags & SampleSet::kSky;
+    hidden_[i] = 0;
 }
 
 /// A new sample of sub-pixel `sub`, still to be traced.
@@ -115,9 +141,12 @@ void SampleGatherer::addNew(uint32_t pixel, int sub, size_t i) const {
     const uint32_t drawn = pixelRandom(pixel, random_);
     locations_[i] = {};
     places_[i] = Vec2(pixel % width_, pixel / width_) + newSamplePlace(sub, jitter_, drawn);
-    lights_[i] = {};
-    lights_[i].name = hashCombine(drawn, static_cast<uint32_t>(sub));
+    notes_[i] = {};
+    notes_[i].name = hashCombine(drawn, static_cast<uint32_t>(sub));
+    if (indirect_) indirect_[i] = Vec3(0);
+    direct_[i] = Vec3(0);
     verdicts_[i] = Verdict::New;
+    flags_[i] = hidden_[i] = 0;
 }
 
 }  // namespace lumi

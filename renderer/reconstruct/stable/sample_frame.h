@@ -5,8 +5,6 @@
 
 namespace lumi {
 
-struct SampleBatch;
-
 /// What the visibility ray to a sample found.
 enum class Verdict : uint8_t {
     New,       ///< the sample was traced in this frame
@@ -22,7 +20,7 @@ struct SampleFrame {
     std::vector<Vec2> motions;       ///< previous minus current place, of visible samples; empty if not wanted
     std::vector<Verdict> verdicts;
     std::vector<uint8_t> hidden;     ///< 1: plays no part in the image
-    std::vector<Vec3> colours;       ///< scene-linear
+    std::vector<Vec3> colours;       ///< scene-linear; empty: the set's direct light is all
 
     std::vector<PixelChange> changes;  ///< a pixel
     ReprojectedSamples reprojected;
@@ -34,22 +32,24 @@ struct SampleFrame {
 };
 
 /// Makes room for the samples of the frame: those of the frame before that reprojection and analysis kept, and the new ones.
-/// Sets `first`. Throws Error(Resources) if they would pass the memory limit.
-void numberSamples(SampleFrame& frame, SampleSet& next);
+/// Sets `first`. `withIndirect`: they gather indirect light. Throws Error(Resources) if they would pass the memory limit.
+void numberSamples(SampleFrame& frame, bool withIndirect, SampleSet& next);
 
-/// Makes the samples of a frame, pixel by pixel and any pixels at a time: those of `previous` that stay, in their new
-/// places, and the new ones, whose location is still to be found.
+/// Makes the samples of a frame, some pixels at a time: those of `previous` that stay, in their new places, and the new ones,
+/// whose location is still to be found.
 class SampleGatherer {
 public:
-    /// `frame`: numbered. `random` names the frame.
-    SampleGatherer(const SampleSet& previous, const DensitySettings& settings, uint32_t random, SampleFrame& frame, SampleSet& next);
-    /// Asks memory for what gather() is going to need.
-    void prefetch(uint32_t pixel) const;
-    /// The samples of a pixel and its word, in which none is occluded yet; adds them to `batch`.
-    void gather(uint32_t pixel, SampleBatch& batch) const;
+    /// `frame`: numbered. `random` names the frame; `keepsDirect`: direct light is averaged.
+    SampleGatherer(const SampleSet& previous, const DensitySettings& settings, uint32_t random, bool keepsDirect, SampleFrame& frame, SampleSet& next);
+    /// Asks memory for what gather() is going to need of neighbouring pixels of a row.
+    void prefetch(uint32_t pixel, uint32_t count) const;
+    /// The samples of neighbouring pixels of a row and their words, in which none is occluded yet.
+    void gather(uint32_t pixel, uint32_t count) const;
 
 private:
+    void gatherChanged(uint32_t pixel) const;
     void addNew(uint32_t pixel, int sub, size_t i) const;
+    void keep(uint32_t source, size_t i) const;
 
     const float jitter_;
     const uint32_t random_, width_;
@@ -57,18 +57,20 @@ private:
     const uint32_t *reprojectedWords_, *reprojectedFirst_, *sources_;
     const PixelChange* changes_;
     const SampleLocation* oldLocations_;
-    const SampleLight* oldLights_;
+    const Vec3 *oldInWorld_, *oldDirect_, *oldIndirect_;  ///< light: null if it is not kept
+    const SampleNote* oldNotes_;
+    const uint8_t* oldFlags_;
     const Vec2 *oldPlaces_, *newPlaces_;
-    const Vec3* inWorld_;
     const uint32_t* first_;
     uint32_t* words_;
     SampleLocation* locations_;
+    Vec3 *inWorld_, *direct_, *indirect_;  ///< indirect: null if there is none
     Vec2* places_;
-    SampleLight* lights_;
+    uint8_t* flags_;
+    SampleNote* notes_;
     Vec2* motions_;  ///< null if not wanted
     Verdict* verdicts_;
     uint8_t* hidden_;
-    Vec3* colours_;
 };
 
 }  // namespace lumi

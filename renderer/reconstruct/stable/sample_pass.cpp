@@ -37,7 +37,8 @@ private:
     void addPacket(std::span<const uint32_t> first, uint32_t slot, uint32_t k);
     void addStart(uint32_t slot);
     bool trace();
-    void keepLight(bool split);
+    void keepLight(bool anyHidden);
+    void addLight(size_t slot, uint32_t i, bool still);
 
     const SamplePass& pass_;
     const SampleRays& rays_;
@@ -54,11 +55,14 @@ bool BlockTracer::addRun(uint32_t pixel, uint32_t count) {
     for (uint32_t p = 0; p < count; ++p) most = std::max(most, first[p + 1] - first[p]);
     const bool dense = pass_.verification.batches == VerificationSettings::Batches::Dense;
     const size_t lanes = dense ? first[count] - first[0] : most * static_cast<uint32_t>(kRun);
-    if (std::max(batch_.startCount + lanes, batch_.sampleCount + first[count] - first[0]) > SampleBatch::kMost && !trace()) return false;
+    const size_t samples = batch_.sampleCount + first[count] - first[0];
+    if ((std::max(batch_.startCount + lanes, samples) > SampleBatch::kMost || batch_.runCount == SampleBatch::kMost) && !trace()) return false;
     const auto begin = static_cast<uint32_t>(batch_.sampleCount);
-    const auto ahead = std::min(pixel + 2u * kRun, static_cast<uint32_t>(pass_.next.words.size()));
-    for (uint32_t p = pixel + kRun; p < ahead; ++p) gatherer_.prefetch(p);
-    for (uint32_t p = 0; p < count; ++p) gatherer_.gather(pixel + p, batch_);
+    const uint32_t ahead = pixel + 2 * kRun, pixels = static_cast<uint32_t>(pass_.next.words.size());
+    if (ahead < pixels) gatherer_.prefetch(ahead, std::min<uint32_t>(kRun, pixels - ahead));
+    gatherer_.gather(pixel, count);
+    batch_.runs[batch_.runCount++] = {pixel, count, begin};
+    for (uint32_t i = first[0]; i < first[count]; ++i) batch_.samples[batch_.sampleCount++] = i;
     if (dense) {
         const uint64_t rays = counts_.rays;
         for (uint32_t slot = begin; slot < batch_.sampleCount; ++slot) addStart(slot);
@@ -97,11 +101,12 @@ void BlockTracer::addStart(uint32_t slot) {
     }
     batch_.startOf[slot] = static_cast<uint16_t>(batch_.startCount);
     PathStart& start = batch_.starts[batch_.startCount++];
-    const float distance = rays_.aim(pass_.next.locations[i], pass_.next.places[i], batch_.inWorld[slot], start);
+    const float distance = rays_.aim(pass_.next.locations[i], pass_.next.places[i], pass_.next.inWorld[i], start);
     batch_.distances[slot] = distance;
     start.ray.tmax = distance * (1 + pass_.verification.epsilon);
     if (!verified) start.ray.tmin = 1, start.ray.tmax = 0;
-    start.key.x = pass_.next.lights[i].name, start.key.y = kStream, start.key.sample = pass_.next.lights[i].pathsDrawn;
+    const SampleNote& note = pass_.next.notes[i];
+    start.key.x = note.name, start.key.y = kStream, start.key.sample = note.pathsDrawn;
     start.slot = slot;
     counts_.rays += verified;
 }
@@ -110,9 +115,8 @@ void BlockTracer::addStart(uint32_t slot) {
 bool BlockTracer::trace() {
     const std::span starts(batch_.starts, batch_.startCount);
     SampleJudge judge(pass_.context, pass_.verification.epsilon, anyHidden_, batch_, pass_.frame, pass_.next);
-    // At depth 1 all light is direct.
     const PathSettings& path = pass_.context.sampling.path;
-    const bool split = path.maxDepth > 1;
+    const bool split = !pass_.next.indirect.empty();
     const std::span direct(batch_.direct, batch_.sampleCount), share(batch_.diffuseShare, batch_.sampleCount);
     if (split) std::fill(direct.begin(), direct.end(), Vec3(0)), std::fill(share.begin(), share.end(), Vec3(0));
     SplitObserver splits(direct, share);
@@ -121,34 +125,57 @@ bool BlockTracer::trace() {
     else if (!pass_.context.tracer.tracePaths(starts, path, pass_.context.sampling.seed, {batch_.radiance, starts.size()},
                                               std::span(observers, split ? 2 : 1), pass_.context.stop))
         return false;
-    keepLight(split);
+    keepLight(judge.anyHidden());
     batch_.clear();
     anyHidden_ = false;
     return true;
 }
 
-void BlockTracer::keepLight(bool split) {
+void BlockTracer::keepLight(bool anyHidden) {
     const GatheringState& state = pass_.light;
-    const bool still = pass_.gathering.converge && state.still;
+    const bool still = pass_.gathering.converge && state.still, averages = still || pass_.gathering.averageDirect;
+    const bool plain = pass_.next.indirect.empty() && !averages && !anyHidden;
+    SampleNote* const notes = pass_.next.notes.data();
     for (size_t slot = 0; slot < batch_.sampleCount; ++slot) {
         const uint32_t i = batch_.samples[slot];
-        SampleLight& light = pass_.next.lights[i];
-        const bool hidden = pass_.frame.hidden[i];
-        if (state.restart || (state.lightsMoved && hidden)) light.indirectCount = light.directCount = 0;
+        const bool hidden = !plain && pass_.frame.hidden[i];
+        if (state.restart || (state.lightsMoved && hidden)) notes[i].indirectCount = notes[i].directCount = 0;
         if (hidden) continue;
-        ++light.pathsDrawn;
-        const Vec3& radiance = batch_.radiance[batch_.startOf[slot]];
-        const Vec3 averaged = split ? glm::max(radiance - batch_.direct[slot], Vec3(0)) * batch_.diffuseShare[slot] : Vec3(0);
-        gather(light, radiance - averaged, averaged, still, pass_.gathering);
-        pass_.frame.colours[i] = light.radiance();
+        ++notes[i].pathsDrawn;
+        if (!plain) {
+            addLight(slot, i, still);
+            continue;
+        }
+        pass_.next.direct[i] = batch_.radiance[batch_.startOf[slot]];
+        notes[i].directCount = 1;
     }
+}
+
+/// Where light is averaged, or is more than direct.
+void BlockTracer::addLight(size_t slot, uint32_t i, bool still) {
+    SampleNote& note = pass_.next.notes[i];
+    Vec3 direct = batch_.radiance[batch_.startOf[slot]];
+    const bool split = !pass_.next.indirect.empty();
+    if (split) {
+        const Vec3 indirect = glm::max(direct - batch_.direct[slot], Vec3(0)) * batch_.diffuseShare[slot];
+        direct -= indirect;
+        addToAverage(pass_.next.indirect[i], note.indirectCount, indirect, still, pass_.gathering);
+    }
+    if (still || pass_.gathering.averageDirect) {
+        addToAverage(pass_.next.direct[i], note.directCount, direct, still, pass_.gathering);
+    } else {
+        pass_.next.direct[i] = direct;
+        note.directCount = 1;
+    }
+    if (split) pass_.frame.colours[i] = pass_.next.radiance(i);
 }
 
 }  // namespace
 
 bool traceSamples(const SamplePass& pass, VerificationCounts& counts) {
     const SampleRays rays(pass.context.camera);
-    const SampleGatherer gatherer(pass.previous, pass.density, pass.random, pass.frame, pass.next);
+    const bool keepsDirect = pass.gathering.averageDirect || (pass.gathering.converge && pass.light.still);
+    const SampleGatherer gatherer(pass.previous, pass.density, pass.random, keepsDirect, pass.frame, pass.next);
     const Extent2 extent = pass.next.extent;
     const int columns = (extent.width + kColumns - 1) / kColumns, rows = (extent.height + kRows - 1) / kRows;
     std::atomic<bool> whole{true};

@@ -1,10 +1,13 @@
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "reconstruct/stable/subpixel_mask.h"
 #include "trace/ray.h"
 
 namespace lumi {
+
+struct Scene;
 
 /// A shading location as it is kept and reprojected, 16 bytes as in [DalCorso17, sec. 5]. It is a point of a triangle
 /// (or of a light's body), so that it stays on skinned, morphed and subdivided surfaces, where the paper's object-space
@@ -25,37 +28,47 @@ struct SampleLocation {
 };
 static_assert(sizeof(SampleLocation) == 16);
 
-/// What a sample has gathered, scene-linear. 36 bytes: the wide form of the paper's 8, which hold no HDR colour, no
-/// indirect light and no count (sec. 6.1 adds those without saying where they are kept).
-struct SampleLight {
-    Vec3 direct{0};    ///< emission and light that met one surface: this frame's, or its mean since nothing moves
-    Vec3 indirect{0};  ///< running average
+/// What is known of a sample beside its place and its light.
+struct SampleNote {
     uint32_t name = 0;  ///< of its random numbers
-    uint16_t directCount = 0, indirectCount = 0;  ///< paths in the two; they stay at 65535
+    uint16_t directCount = 0, indirectCount = 0;  ///< paths in its light; they stay at 65535
     uint16_t age = 0;                             ///< frames since it was traced, at most 65535
     uint16_t pathsDrawn = 0;                      ///< of its sequence of random numbers, modulo 65536
-    Vec3 radiance() const { return direct + indirect; }
 };
-static_assert(sizeof(SampleLight) == 36);
+static_assert(sizeof(SampleNote) == 12);
 
 /// The sample buffer of one frame [DalCorso17, sec. 4]: up to 16 samples a pixel. Where the paper has 16 slots for each
 /// pixel, here the samples lie without gaps, pixel after pixel in rows, those of a pixel in the order of their
-/// sub-pixels: memory is that of the samples which exist, and work over them is balanced by itself.
+/// sub-pixels: memory is that of the samples which exist, and work over them is balanced by itself. Each thing that is
+/// known of a sample is a vector of its own, so that a step reads nothing else.
 ///
-/// Bytes a pixel: 4 (word) + 4 (first) and 60 for each sample: 16 (location), 8 (place), 36 (light). At 1.25 samples a
-/// pixel that is 83, and three such sets are held (StableModule::byteCount() has the sum); the paper's buffers have 648 whatever
-/// the number, a set with all 16 would have 968.
+/// Bytes a pixel: 4 (word) + 4 (first) and 73 for each sample: 16 (location), 12 (in the world), 8 (place), 1 (flags),
+/// 12 (note), 12 (direct light), 12 (indirect light; only where paths are longer than one surface). At 1.25 samples a pixel that is
+/// 99, and three such sets are held (StableModule::byteCount() has the sum); the paper's buffers have 648 whatever the
+/// number, a set with all 16 would have 1176. Light is the wide form of the paper's 8 bytes, which hold no HDR colour, no
+/// indirect light and no count (sec. 6.1 adds those without saying where they are kept).
 struct SampleSet {
+    static constexpr uint8_t kOccluded = 1, kSky = 2;  ///< flags
+
     Extent2 extent;
     std::vector<uint32_t> words;  ///< a pixel
     std::vector<uint32_t> first;  ///< index of each pixel's first sample, and one more: the number of samples
     std::vector<SampleLocation> locations;
-    std::vector<Vec2> places;     ///< on the screen, continuous pixels
-    std::vector<SampleLight> lights;
+    std::vector<Vec3> inWorld;  ///< position, or direction into the sky; not a number for samples that are evicted
+    std::vector<Vec2> places;   ///< on the screen, continuous pixels
+    std::vector<uint8_t> flags;
+    std::vector<SampleNote> notes;
+    std::vector<Vec3> direct;    ///< scene-linear: emission and light that met one surface, this frame's or its mean since nothing moves
+    std::vector<Vec3> indirect;  ///< running average; empty: paths ended at the first surface
+    std::weak_ptr<const Scene> scene;  ///< that positions are of
 
     size_t size() const { return locations.size(); }
-    size_t bytes() const {
-        return (words.size() + first.size()) * 4 + size() * (sizeof(SampleLocation) + sizeof(Vec2) + sizeof(SampleLight));
+    Vec3 radiance(size_t i) const { return indirect.empty() ? direct[i] : direct[i] + indirect[i]; }
+    /// `withIndirect`: there is indirect light. What vectors hold is not defined then.
+    void resize(size_t count, bool withIndirect);
+    size_t bytes() const { return (words.size() + first.size()) * 4 + size() * bytesASample(!indirect.empty()); }
+    static constexpr size_t bytesASample(bool withIndirect) {
+        return sizeof(SampleLocation) + sizeof(Vec2) + 1 + sizeof(SampleNote) + sizeof(Vec3) * (withIndirect ? 3 : 2);
     }
 };
 

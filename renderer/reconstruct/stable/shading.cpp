@@ -33,18 +33,12 @@ void SplitObserver::bounce(const BounceBatch& batch) {
     }
 }
 
-void gather(SampleLight& light, const Vec3& direct, const Vec3& indirect, bool still, const GatheringSettings& settings) {
-    const auto most = static_cast<uint16_t>(std::clamp(1 / settings.indirectAlpha + 0.5f, 1.0f, 65535.0f));
+void addToAverage(Vec3& average, uint16_t& count, const Vec3& value, bool still, const GatheringSettings& settings) {
     // The next path is number `count`; a moving average forgets what lies further back.
-    const auto average = [&](Vec3& mean, uint16_t& count, const Vec3& value) {
-        count = still ? static_cast<uint16_t>(std::min(count + 1, 0xFFFF)) : static_cast<uint16_t>(std::min<int>(count + 1, most));
-        const float weight = still ? 1 / static_cast<float>(count) : std::max(settings.indirectAlpha, 1 / static_cast<float>(count));
-        mean += (value - mean) * weight;
-    };
-    average(light.indirect, light.indirectCount, indirect);
-    if (still || settings.averageDirect) return average(light.direct, light.directCount, direct);
-    light.direct = direct;
-    light.directCount = 1;
+    const auto most = still ? 0xFFFF : static_cast<int>(std::clamp(1 / settings.indirectAlpha + 0.5f, 1.0f, 65535.0f));
+    count = static_cast<uint16_t>(std::min(count + 1, most));
+    const float weight = still ? 1 / static_cast<float>(count) : std::max(settings.indirectAlpha, 1 / static_cast<float>(count));
+    average += (value - average) * weight;
 }
 
 }  // namespace lumi

@@ -23,9 +23,9 @@ struct GatheringState {
     bool lightsMoved = false;  ///< those of hidden samples do, which cannot follow
 };
 
-/// Adds the light of one more path to what a sample has gathered: `indirect` is what is averaged, `direct` all else.
-/// `still`: nothing has changed since the frame before.
-void gather(SampleLight& light, const Vec3& direct, const Vec3& indirect, bool still, const GatheringSettings& settings);
+/// Adds `value`, the light of one more path, to the average of `count` of them. `still`: nothing has changed since the frame
+/// before, and it is their mean.
+void addToAverage(Vec3& average, uint16_t& count, const Vec3& value, bool still, const GatheringSettings& settings);
 
 /// Paths of one sample a slot: the light that met at most one surface, and which part of all else came to that surface's
 /// diffuse lobe.

@@ -29,7 +29,7 @@ void StableModule::describe(ParameterVisitor& v) {
 void StableModule::resize(Extent2 extent) {
     // Three frames of samples and what works on them. A quarter more than the target are held, most of them occluded.
     constexpr uint64_t kBytesAPixel = 110;
-    constexpr uint64_t kBytesASample = 3 * (sizeof(SampleLocation) + sizeof(Vec2) + sizeof(SampleLight)) + 90;
+    constexpr uint64_t kBytesASample = 3 * SampleSet::bytesASample(true) + 82;
     const auto samples = static_cast<uint64_t>(1.25 * density_.density * static_cast<double>(extent.area()));
     checkMemory("the samples of stable ray tracing", kBytesAPixel * static_cast<uint64_t>(extent.area()) + kBytesASample * samples);
     extent_ = extent;
@@ -99,7 +99,9 @@ bool StableModule::placeSamples(const FrameContext& context, const SampleSet& pr
     if (changed) next.meanFrames = 1;  // new samples have one path
     next.samples.extent = extent_;
     frame_.wantsMotions = temporal_.enabled() || taps_.wants("sampleMotion");
-    numberSamples(frame_, next.samples);
+    // At depth 1 all light is direct.
+    numberSamples(frame_, context.sampling.path.maxDepth > 1, next.samples);
+    next.samples.scene = context.scene.scene;
     return true;
 }
 
@@ -111,12 +113,16 @@ bool StableModule::trace(const FrameContext& context, const SampleSet& previous,
 
 bool StableModule::reconstruct(const FrameContext& context, const SampleSet& samples, Image& out) {
     const auto measured = context.timer.measure("reconstruction");
-    if (reconstructScattered({extent_, samples.first, samples.places, frame_.colours, frame_.hidden}, scattered_, out, weights_, context.stop) < 0)
+    if (reconstructScattered({extent_, samples.first, samples.places, coloursOf(samples), frame_.hidden}, scattered_, out, weights_, context.stop) < 0)
         return false;
     if (motion_.extent() != extent_) motion_.reset(extent_, 2);
     if (frame_.wantsMotions) longestMotions(samples.first, frame_.motions, frame_.hidden, motion_);
     taps_.keep("reconstructed", out);
     return true;
+}
+
+std::span<const Vec3> StableModule::coloursOf(const SampleSet& samples) const {
+    return samples.indirect.empty() ? samples.direct : frame_.colours;
 }
 
 std::string StableModule::advice() const {

@@ -16,7 +16,8 @@ namespace lumi {
 /// Differs from the paper:
 /// - A location is (instance, triangle, barycentrics), so that samples stay on surfaces that deform; the paper's is a
 ///   position in the space of an affine transform. A ray that leaves the scene gives a sample too: its direction.
-/// - Samples lie without gaps instead of 16 slots a pixel, and light is kept as floats: see SampleSet for the bytes.
+/// - Samples lie without gaps instead of 16 slots a pixel, and light is kept as floats: see SampleSet for the bytes. Where a
+///   sample is in the world is kept, too, and found again only when surfaces move.
 /// - Of several samples in one sub-pixel the first in memory's order stays: the paper's is that of the quickest thread.
 /// - Algorithm 1 keeps the occlusion bit of an occluded sample in an empty sub-pixel, as the text says.
 /// - A sample's visibility ray is the first of the path that shades it, and batches of rays are lists without gaps.
@@ -72,6 +73,7 @@ private:
     GatheringState lightState(const FrameContext& context, const Kept* previous, Kept& next) const;
     bool trace(const FrameContext& context, const SampleSet& previous, const GatheringState& light, SampleSet& samples, VerificationCounts& counts);
     bool reconstruct(const FrameContext& context, const SampleSet& samples, Image& out);
+    std::span<const Vec3> coloursOf(const SampleSet& samples) const;
     void keepTaps(const FrameContext& context, const SampleSet& samples);
     void inspect(const FrameContext& context, const SampleSet& samples);
 

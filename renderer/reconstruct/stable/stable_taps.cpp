@@ -27,7 +27,7 @@ float meanOfVisible(const SampleFrame& frame, const SampleSet& samples, size_t p
     float sum = 0, count = 0;
     for (uint32_t i = samples.first[pixel]; i < samples.first[pixel + 1]; ++i) {
         if (frame.hidden[i]) continue;
-        sum += static_cast<float>(value(samples.lights[i]));
+        sum += static_cast<float>(value(samples.notes[i]));
         ++count;
     }
     return count > 0 ? sum / count : 0;
@@ -132,13 +132,13 @@ void StableModule::keepTaps(const FrameContext& context, const SampleSet& sample
     fill(taps_.target("sampleCount"), extent_, [&](size_t p) { return static_cast<float>(std::popcount(subpixel::visible(samples.words[p]))); });
     taps_.keep("density", localDensity_);
     drawChanges(frame_, extent_, taps_.target("changes"));
-    fill(taps_.target("age"), extent_, [&](size_t p) { return meanOfVisible(frame_, samples, p, [](const SampleLight& l) { return l.age; }); });
+    fill(taps_.target("age"), extent_, [&](size_t p) { return meanOfVisible(frame_, samples, p, [](const SampleNote& n) { return n.age; }); });
     fill(taps_.target("holes"), extent_, [&](size_t p) {
         return !(weights_.data()[p] > 0) ? 2.0f : subpixel::visible(samples.words[p]) ? 0.0f : 1.0f;
     });
     fill(taps_.target("verdicts"), extent_, [&](size_t p) { return verdictCode(frame_, samples, p); });
     fill(taps_.target("indirectCount"), extent_,
-         [&](size_t p) { return meanOfVisible(frame_, samples, p, [](const SampleLight& l) { return l.indirectCount; }); });
+         [&](size_t p) { return meanOfVisible(frame_, samples, p, [](const SampleNote& n) { return n.indirectCount; }); });
     fill(taps_.target("lanes"), extent_, [&](size_t p) { return lanesOf(frame_, samples, verification_.batches, p); });
     taps_.keep("sampleMotion", motion_);
 }
@@ -156,11 +156,11 @@ void StableModule::inspect(const FrameContext& context, const SampleSet& samples
             const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(extent_.width) + static_cast<size_t>(x);
             for (uint32_t i = samples.first[pixel]; i < samples.first[pixel + 1]; ++i) {
                 const Vec2 off = samples.places[i] - centre;
-                const float weight = frame_.hidden[i] ? 0 : scatteredWeight(scattered_, off, frame_.colours[i]);
+                const float weight = frame_.hidden[i] ? 0 : scatteredWeight(scattered_, off, coloursOf(samples)[i]);
                 sum += weight;
                 const char* kNames[] = {"new", "visible", "occluded", "moved to what occludes it", "missed"};
                 lineage_.rows.push_back({"reconstruction", {x, y}, weight,
-                                         std::string(kNames[static_cast<size_t>(frame_.verdicts[i])]) + ", age " + std::to_string(samples.lights[i].age)});
+                                         std::string(kNames[static_cast<size_t>(frame_.verdicts[i])]) + ", age " + std::to_string(samples.notes[i].age)});
             }
         }
     for (Lineage::Row& row : lineage_.rows) row.weight = sum > 0 ? row.weight / sum : 0;

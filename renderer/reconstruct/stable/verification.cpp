@@ -1,5 +1,7 @@
 #include "reconstruct/stable/verification.h"
 
+#include <limits>
+
 #include "frame/motion.h"
 
 namespace lumi {
@@ -43,7 +45,8 @@ void SampleJudge::judge(std::span<const PathStart> starts, std::span<Hit> hits, 
         else verify(starts[k], hits[k]);
     }
     if (!anyHidden_) return;
-    for (const SampleBatch::Pixel& pixel : std::span(batch_.pixels, batch_.pixelCount)) settle(pixel, hits);
+    for (const SampleBatch::Run& run : std::span(batch_.runs, batch_.runCount))
+        for (uint32_t k = 0; k < run.count; ++k) settle(run.pixel + k, run.slot + set_.first[run.pixel + k] - set_.first[run.pixel], hits);
     for (size_t k = 0; k < starts.size(); ++k)
         if (goesOn[k]) goesOn[k] = !frame_.hidden[batch_.samples[starts[k].slot]];
 }
@@ -71,10 +74,13 @@ void SampleJudge::locate(const Ray& ray, const Hit& hit, uint32_t i) {
     const CameraPose &camera = context_.camera, &previous = context_.previousCamera;
     if (!hit.valid()) {
         set_.locations[i] = SampleLocation::ofSky(ray.direction);
+        set_.inWorld[i] = ray.direction;
+        set_.flags[i] = SampleSet::kSky;
         if (frame_.wantsMotions) frame_.motions[i] = Vec2(skyMotion(camera, previous, ray.direction));
         return;
     }
     set_.locations[i] = SampleLocation::ofPoint(hit.point);
+    set_.inWorld[i] = context_.tracer.position(hit.point);
     if (!frame_.wantsMotions) return;
     const Vec3 position = ray.origin + ray.direction * hit.distance;
     frame_.motions[i] = Vec2(surfaceMotion(camera, previous, position, context_.tracer.previousPosition(hit.point)));
@@ -82,34 +88,43 @@ void SampleJudge::locate(const Ray& ray, const Hit& hit, uint32_t i) {
 
 /// The pixel's word and what the image may show, from the verdicts. The last sample of a pixel moves to what occludes it
 /// [DalCorso17, sec. 4.3]: the first of those that are occluded, if none is visible.
-void SampleJudge::settle(const SampleBatch::Pixel& at, std::span<Hit> hits) {
-    const uint32_t begin = set_.first[at.pixel], end = set_.first[at.pixel + 1];
+void SampleJudge::settle(uint32_t pixel, uint32_t slot, std::span<Hit> hits) {
+    const uint32_t begin = set_.first[pixel], end = set_.first[pixel + 1];
     bool any = false;
     uint32_t last = end;
     for (uint32_t i = begin; i < end; ++i) {
         any |= !isHidden(frame_.verdicts[i]);
         if (last == end && frame_.verdicts[i] == Verdict::Occluded) last = i;
     }
-    if (!any && last < end && !frame_.newOnly) replace(last, hits[batch_.startOf[at.slot + last - begin]]);
-    uint32_t bits = subpixel::occupied(set_.words[at.pixel]), occlusion = 0;
+    if (!any && last < end && !frame_.newOnly) replace(last, hits[batch_.startOf[slot + last - begin]]);
+    uint32_t bits = subpixel::occupied(set_.words[pixel]), occlusion = 0;
     for (uint32_t i = begin; i < end; ++i, bits &= bits - 1) {
         frame_.hidden[i] = isHidden(frame_.verdicts[i]);
-        if (frame_.hidden[i]) occlusion |= bits & (~bits + 1);
-        if (frame_.verdicts[i] == Verdict::Missed) set_.locations[i] = {};
+        if (!frame_.hidden[i]) continue;
+        occlusion |= bits & (~bits + 1);
+        set_.flags[i] |= SampleSet::kOccluded;
+        if (frame_.verdicts[i] == Verdict::Missed) evict(i);
     }
-    uint32_t& word = set_.words[at.pixel];
+    uint32_t& word = set_.words[pixel];
     word = subpixel::occupied(word) | occlusion << subpixel::kCount;
+}
+
+/// What the next reprojection drops.
+void SampleJudge::evict(uint32_t i) {
+    set_.locations[i] = {};
+    set_.inWorld[i] = Vec3(std::numeric_limits<float>::quiet_NaN());
 }
 
 void SampleJudge::replace(uint32_t i, const Hit& blocker) {
     frame_.verdicts[i] = Verdict::Replaced;
     set_.locations[i] = SampleLocation::ofPoint(blocker.point);
-    const uint32_t name = set_.lights[i].name;
-    const uint16_t drawn = set_.lights[i].pathsDrawn;
-    set_.lights[i] = {};
-    set_.lights[i].name = name, set_.lights[i].pathsDrawn = drawn;
+    const Vec3 position = set_.inWorld[i] = context_.tracer.position(blocker.point);
+    set_.flags[i] = 0;
+    SampleNote& note = set_.notes[i];
+    note.age = note.directCount = note.indirectCount = 0;
+    set_.direct[i] = Vec3(0);
+    if (!set_.indirect.empty()) set_.indirect[i] = Vec3(0);
     if (!frame_.wantsMotions) return;
-    const Vec3 position = context_.tracer.position(blocker.point);
     frame_.motions[i] = Vec2(surfaceMotion(context_.camera, context_.previousCamera, position, context_.tracer.previousPosition(blocker.point)));
 }
 

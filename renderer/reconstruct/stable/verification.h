@@ -31,11 +31,14 @@ public:
         : context_(context), epsilon_(epsilon), anyHidden_(anyHidden), batch_(batch), frame_(frame), set_(set) {}
     void nameRays(std::span<const PathStart> starts, std::span<uint32_t> ids) const override;
     void judge(std::span<const PathStart> starts, std::span<Hit> hits, std::span<uint8_t> goesOn) override;
+    /// Is any sample of the batch hidden?
+    bool anyHidden() const { return anyHidden_; }
 
 private:
     void verify(const PathStart& start, Hit& hit);
     void locate(const Ray& ray, const Hit& hit, uint32_t sample);
-    void settle(const SampleBatch::Pixel& at, std::span<Hit> hits);
+    void settle(uint32_t pixel, uint32_t slot, std::span<Hit> hits);
+    void evict(uint32_t sample);
     void replace(uint32_t sample, const Hit& blocker);
 
     const FrameContext& context_;
