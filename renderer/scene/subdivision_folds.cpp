@@ -12,26 +12,41 @@ namespace Far = OpenSubdiv::Far;
 /// faces, their vertices and its creases fit into the 256 integers that OpenSubdiv has ready on the stack.
 constexpr int kSafeCreases = 32;
 
+/// What joins faces: their vertices or, as a face-varying channel has it, their texture coordinates.
+constexpr int kVertices = -1;
+
+/// The two faces have the same values at both ends of their edge, which they go along in opposite directions.
+bool valuesMatch(const Far::TopologyLevel& level, int edge, int face, int other, int channel) {
+    const auto place = [&](int of) {
+        const auto edges = level.GetFaceEdges(of);
+        return static_cast<int>(std::find(edges.begin(), edges.end(), edge) - edges.begin());
+    };
+    const auto values = level.GetFaceFVarValues(face, channel), others = level.GetFaceFVarValues(other, channel);
+    const int here = place(face), there = place(other);
+    return values[here] == others[(there + 1) % others.size()] && values[(here + 1) % values.size()] == others[there];
+}
+
 /// The face on the other side of a closed edge, or -1.
-int acrossEdge(const Far::TopologyLevel& level, int edge, int face) {
+int acrossEdge(const Far::TopologyLevel& level, int edge, int face, int channel) {
     const auto faces = level.GetEdgeFaces(edge);
     if (faces.size() != 2 || level.IsEdgeNonManifold(edge)) return -1;
-    return faces[0] == face ? faces[1] : faces[0];
+    const int other = faces[0] == face ? faces[1] : faces[0];
+    return channel == kVertices || valuesMatch(level, edge, face, other, channel) ? other : -1;
 }
 
-bool isFoldCorner(const Far::TopologyLevel& level, int face, int corner) {
+bool isFoldCorner(const Far::TopologyLevel& level, int face, int corner, int channel) {
     const auto edges = level.GetFaceEdges(face);
     const int before = edges[(corner + edges.size() - 1) % edges.size()];
-    const int neighbour = acrossEdge(level, edges[corner], face);
-    return neighbour >= 0 && neighbour == acrossEdge(level, before, face);
+    const int neighbour = acrossEdge(level, edges[corner], face, channel);
+    return neighbour >= 0 && neighbour == acrossEdge(level, before, face, channel);
 }
 
-bool isOpenFold(const Far::TopologyLevel& level, int face) {
+bool isOpenFold(const Far::TopologyLevel& level, int face, int channel) {
     const auto edges = level.GetFaceEdges(face);
-    if (std::none_of(edges.begin(), edges.end(), [&](int edge) { return acrossEdge(level, edge, face) < 0; }))
-        return false;
+    const auto isOpen = [&](int edge) { return acrossEdge(level, edge, face, channel) < 0; };
+    if (std::none_of(edges.begin(), edges.end(), isOpen)) return false;
     for (int corner = 0; corner < edges.size(); ++corner)
-        if (isFoldCorner(level, face, corner)) return true;
+        if (isFoldCorner(level, face, corner, channel)) return true;
     return false;
 }
 
@@ -65,7 +80,7 @@ bool isFold(const Far::TopologyLevel& level, int vertex) {
     for (const int face : level.GetVertexFaces(vertex)) {
         const auto corners = level.GetFaceVertices(face);
         for (int corner = 0; corner < corners.size(); ++corner)
-            if (corners[corner] == vertex && isFoldCorner(level, face, corner)) return true;
+            if (corners[corner] == vertex && isFoldCorner(level, face, corner, kVertices)) return true;
     }
     return false;
 }
@@ -77,8 +92,9 @@ bool hasFolds(const Far::TopologyLevel& level) {
 }
 
 bool hasOpenFolds(const Far::TopologyLevel& level) {
-    for (int face = 0; face < level.GetNumFaces(); ++face)
-        if (isOpenFold(level, face)) return true;
+    for (int channel = kVertices; channel < level.GetNumFVarChannels(); ++channel)
+        for (int face = 0; face < level.GetNumFaces(); ++face)
+            if (isOpenFold(level, face, channel)) return true;
     return false;
 }
 

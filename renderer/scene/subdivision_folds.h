@@ -12,7 +12,7 @@ namespace lumi {
 //   as many entries at the end are read that nobody wrote, as indices of vertices (its pull request 1301). One level of
 //   refinement leaves a fold on quads all of whose edges are closed. The exception is a face with an edge from a vertex
 //   to itself: its halves join the same vertices, so their middle becomes a fold, on faces that may be open; a second
-//   level mends that.
+//   level mends that. Texture coordinates have folds and open edges of their own.
 // - A fold with one infinitely sharp edge reads and writes out of bounds (1336): a dart's edge that is sharp but not
 //   infinitely so avoids it.
 // - A patch with a fold must not be shared through the surface cache (1353).
@@ -27,7 +27,7 @@ bool isFold(const OpenSubdiv::Far::TopologyLevel& level, int vertex);
 /// True if any vertex is a fold.
 bool hasFolds(const OpenSubdiv::Far::TopologyLevel& level);
 
-/// True if a face has a fold and an open edge.
+/// True if a face has a fold and an open edge, by its vertices or by a face-varying channel.
 bool hasOpenFolds(const OpenSubdiv::Far::TopologyLevel& level);
 
 /// True if the creases around a face among triangles may be too many for their buffer.

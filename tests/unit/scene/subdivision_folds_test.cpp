@@ -104,11 +104,14 @@ TEST(SubdivisionFolds, OtherFacesAreTessellatedAsWithoutThem) {
 
 /// Two triangles back to back, whose folds have the cage refined, beside faces that go round a vertex twice. Refined
 /// once, the middle of that vertex's edge to itself is a fold on open faces with semi-sharp edges about them: the other
-/// edges of the first quad are boundaries, those of the twin pentagons have two faces in the same direction.
+/// edges of the first quad are boundaries, those of the twin pentagons have two faces in the same direction, and those
+/// of the last quads are open in their texture coordinates alone.
 const std::string kPillow = "v 9 0 0\nv 10 0 0\nv 9 1 0\nf 1 2 3\nf 2 1 3\n";
 const std::string kDoubled[] = {
     kPillow + "v 0 0 0\nv 1 0 0\nv 1 1 0.3\nv -0.5 1 0\nv 0.5 -1 0\nf 4 4 5 6\nf 4 7 8 5\n#t crease 2/1/0 4 3 2.0\n",
-    kPillow + "v 0 0 0\nv 1 0 0\nv 1 1 0.3\nv 0 1 0\nf 4 5 6 7 7\nf 4 5 6 7 7\n"};
+    kPillow + "v 0 0 0\nv 1 0 0\nv 1 1 0.3\nv 0 1 0\nf 4 5 6 7 7\nf 4 5 6 7 7\n",
+    "v 0 0 0\nv 1 0 0\nv 1 1 0.3\nvt 0 0\nvt 1 1\nf 3/2 1/1 1/2 2/1\nf 1/2 3/2 2/1 1/2\n"
+    "#t facevaryinginterpolateboundary 1/0/0 3\n"};
 
 /// Two cones of triangles, base to base, all of whose edges are semi-sharp.
 std::string creasedCones(int sides) {
