@@ -104,7 +104,6 @@ void sharpenDoubledEdges(const Far::TopologyRefiner& refiner, SubdivisionCage& o
         if (ends[0] != ends[1]) continue;
         const auto end = static_cast<uint32_t>(parents.GetVertexChildVertex(ends[0]));
         const auto middle = static_cast<uint32_t>(parents.GetEdgeChildVertex(edge));
-        out.corners.push_back({end, kInfinitelySharp});
         out.corners.push_back({middle, kInfinitelySharp});
         out.creases.push_back({end, middle, kNearlySharp});
     }

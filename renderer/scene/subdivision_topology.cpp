@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <opensubdiv/far/error.h>
 #include <opensubdiv/far/topologyDescriptor.h>
+#include <opensubdiv/sdc/crease.h>
 
 #include <algorithm>
 #include <numeric>
@@ -61,6 +62,21 @@ void silenceOpenSubdiv() {
     Far::SetErrorCallback([](Far::ErrorType, const char*) {});
 }
 
+/// Vertices that some face has twice. OpenSubdiv 3.5 makes sharp corners of most, as of all that are not manifold, but
+/// takes a few for manifold ones and averages around them with weights that it never set. Made corners, all are alike.
+std::vector<int> repeatedVertices(const SubdivisionCage& cage) {
+    std::vector<int> result;
+    std::vector<size_t> lastFace(cage.positions.size(), 0);  // of each vertex, counted from 1
+    size_t next = 0;
+    for (size_t face = 1; face <= cage.faceSizes.size(); ++face)
+        for (uint32_t corner = 0; corner < cage.faceSizes[face - 1]; ++corner) {
+            const uint32_t vertex = cage.faceVertices[next++];
+            if (lastFace[vertex] == face) result.push_back(static_cast<int>(vertex));
+            lastFace[vertex] = face;
+        }
+    return result;
+}
+
 std::vector<int> asInts(const std::vector<uint32_t>& values) { return {values.begin(), values.end()}; }
 
 }  // namespace
@@ -79,6 +95,11 @@ std::unique_ptr<Far::TopologyRefiner> makeRefiner(const SubdivisionCage& cage, c
     for (const auto& corner : cage.corners) {
         cornerVertices.push_back(static_cast<int>(corner.vertex));
         cornerWeights.push_back(corner.sharpness);
+    }
+
+    for (const int vertex : repeatedVertices(cage)) {
+        cornerVertices.push_back(vertex);
+        cornerWeights.push_back(Sdc::Crease::SHARPNESS_INFINITE);
     }
 
     Far::TopologyDescriptor::FVarChannel channel;
