@@ -21,29 +21,6 @@ constexpr size_t kAlone = 4096;
 constexpr uint32_t kMostInGroup = 4096;
 constexpr float kFarRadii = 4, kGroupSpread = 0.8f;
 
-/// Solid angle that the lights shine into, weighted by the cosine [Conty Estevez & Kulla 2018, equation 1].
-float orientationMeasure(const LightBounds& b) {
-    const float spread = std::acos(std::clamp(b.cosSpread, -1.0f, 1.0f));
-    const float reach = std::acos(std::clamp(b.cosReach, -1.0f, 1.0f));
-    const float whole = std::min(spread + reach, kPi);
-    const float sinSpread = std::sin(spread);
-    return 2 * kPi * (1 - b.cosSpread) + kPi / 2 *
-                                             (2 * whole * sinSpread - std::cos(spread - 2 * whole) -
-                                              2 * spread * sinSpread + b.cosSpread);
-}
-
-float areaOf(const Bounds3& box) {
-    const Vec3 s = box.size();
-    return 2 * (s.x * s.y + s.y * s.z + s.z * s.x);
-}
-
-/// What a group costs: how likely it is to be visited, times what is missed by taking it for one light. Without an area
-/// (lights along a line or at one place) its length counts a little, so that orientation and intensity still tell.
-float costOf(const LightBounds& b) {
-    const float length = glm::length(b.box.size());
-    return b.intensity * orientationMeasure(b) * (areaOf(b.box) + 1e-3f * length * length + 1e-20f);
-}
-
 /// A range of the order of lights, with its bounds.
 struct Range {
     uint32_t begin = 0, end = 0;
@@ -223,6 +200,22 @@ private:
     std::vector<uint32_t> order_;
 };
 
+/// The nodes level by level: the upper levels, which every walk down meets, lie together.
+std::vector<LightTreeNode> byLevels(std::span<const LightTreeNode> nodes) {
+    std::vector<uint32_t> sources{0};
+    std::vector<LightTreeNode> sorted;
+    sources.reserve(nodes.size()), sorted.reserve(nodes.size());
+    for (size_t i = 0; i < sources.size(); ++i) {
+        sorted.push_back(nodes[sources[i]]);
+        for (uint32_t& child : sorted.back().child) {
+            if (child & LightTreeNode::kLight) continue;
+            sources.push_back(child);
+            child = static_cast<uint32_t>(sources.size() - 1);
+        }
+    }
+    return sorted;
+}
+
 uint64_t digestOf(std::span<const LightBounds> bounds) {
     uint64_t digest = bounds.size();
     const auto add = [&](float a, float b) {
@@ -249,42 +242,6 @@ std::vector<LightBounds> sane(std::span<const LightBounds> bounds) {
 
 }  // namespace
 
-LightBounds unite(const LightBounds& a, const LightBounds& b) {
-    LightBounds all = a;
-    all.box.extend(b.box);
-    all.intensity = a.intensity + b.intensity;
-    all.cosReach = std::min(a.cosReach, b.cosReach);
-    all.bothSides = a.bothSides || b.bothSides;
-    // The cone around both spreads; with both sides lit the opposite axis is as good.
-    const LightBounds& wide = a.cosSpread <= b.cosSpread ? a : b;
-    const LightBounds& narrow = &wide == &a ? b : a;
-    float between = glm::dot(wide.axis, narrow.axis);
-    const bool flips = all.bothSides && between < 0;
-    const Vec3 axis = flips ? -narrow.axis : narrow.axis;
-    between = std::clamp(flips ? -between : between, -1.0f, 1.0f);
-    all.axis = wide.axis;
-    all.cosSpread = wide.cosSpread;
-    if (wide.cosSpread <= -1) return all;
-    if (narrow.cosSpread >= 1 && between >= wide.cosSpread) return all;
-    const float spreadWide = std::acos(std::clamp(wide.cosSpread, -1.0f, 1.0f));
-    const float spreadNarrow = std::acos(std::clamp(narrow.cosSpread, -1.0f, 1.0f));
-    const float angle = std::acos(between);
-    if (angle + spreadNarrow <= spreadWide) return all;
-    const float spread = 0.5f * (spreadWide + angle + spreadNarrow);
-    const float turn = spread - spreadWide, sine = std::sin(angle);
-    const Vec3 turned = sine > 1e-4f ? wide.axis * (std::sin(angle - turn) / sine) + axis * (std::sin(turn) / sine)
-                                     : wide.axis;
-    const float length = glm::length(turned);
-    // Opposite axes have no middle; nearly equal ones need none, their spread is a little more.
-    if (!(spread < kPi) || !(length > 0.5f) || (sine <= 1e-4f && between < 0)) {
-        all.cosSpread = -1;
-        return all;
-    }
-    all.axis = turned / length;
-    all.cosSpread = std::cos(std::min(spread + (sine > 1e-4f ? 1e-4f : 1e-4f + turn), kPi));
-    return all;
-}
-
 void LightTree::build(std::span<const LightBounds> bounds) {
     kernels_ = &lightTreeKernels();
     const uint64_t digest = digestOf(bounds);
@@ -294,8 +251,9 @@ void LightTree::build(std::span<const LightBounds> bounds) {
     if (bounds.empty()) return;
     const std::vector<LightBounds> lights = sane(bounds);
     Builder builder(lights);
-    builder.build(builder.whole(), nodes_);
-    nodes_.shrink_to_fit();
+    std::vector<LightTreeNode> nodes;
+    builder.build(builder.whole(), nodes);
+    nodes_ = byLevels(nodes);
     rankLights(lights, builder.takeOrder());
     findWays();
     findGroups();
@@ -306,30 +264,36 @@ void LightTree::rankLights(std::span<const LightBounds> lights, std::span<const 
     ranks_.assign(lights.size() + 1, {});
     for (uint32_t rank = 0; rank < order.size(); ++rank) {
         ranks_[rank].light = order[rank];
-        ways_[order[rank]].rank = rank;
         ranks_[rank + 1].before = ranks_[rank].before + double(lights[order[rank]].intensity);
+        ways_[order[rank]].intensity = ranks_[rank + 1].before - ranks_[rank].before;
     }
 }
 
 void LightTree::findWays() {
-    std::vector<LightTreeWay> waysTo(nodes_.size());
+    struct Way {
+        uint64_t columns = 0;
+        uint32_t length = 0;
+    };
+    std::vector<Way> waysTo(nodes_.size());
     // Children stand after their parents.
     for (uint32_t n = 0; n < nodes_.size(); ++n)
         for (uint32_t c = 0; c < kWidth; ++c) {
             const LightTreeNode& node = nodes_[n];
-            LightTreeWay way = waysTo[n];
+            Way way = waysTo[n];
             assert(way.length < LightTreeWay::kMost);
             way.columns |= uint64_t(c) << (LightTreeWay::kBits * way.length++);
             const uint32_t light = node.child[c] & ~LightTreeNode::kLight;
             if (light == node.child[c])
                 waysTo[node.child[c]] = way;
             else if (node.intensity[c] > 0)
-                way.rank = ways_[light].rank, ways_[light] = way;
+                ways_[light].columns = way.columns | LightTreeWay::kEnd << (LightTreeWay::kBits * way.length);
         }
 }
 
 void LightTree::findGroups() {
     const auto count = static_cast<uint32_t>(ways_.size());
+    std::vector<uint32_t> rankOf(count);
+    for (uint32_t rank = 0; rank < count; ++rank) rankOf[ranks_[rank].light] = rank;
     groups_.assign(nodes_.size() * kWidth, {});
     // Children stand after their parents: backwards, every node knows its own range.
     std::vector<LightTreeGroup> ranges(nodes_.size(), {.begin = count});
@@ -340,7 +304,7 @@ void LightTree::findGroups() {
             LightTreeGroup group;
             if (child & LightTreeNode::kLight) {
                 if (!(node.intensity[c] > 0)) continue;
-                group.begin = ways_[child & ~LightTreeNode::kLight].rank, group.end = group.begin + 1;
+                group.begin = rankOf[child & ~LightTreeNode::kLight], group.end = group.begin + 1;
             } else {
                 group = ranges[child];
                 const bool alike = node.cosSpread[c] >= kGroupSpread && node.cosReach[c] <= 0;

@@ -2,24 +2,10 @@
 #include <span>
 #include <vector>
 
-#include "math/vector.h"
+#include "trace/light_bounds.h"
 #include "trace/light_tree_kernels.h"
 
 namespace lumi {
-
-/// Bounds of where lights are and where they shine to. Directions that a light faces lie within `cosSpread` of the axis (and
-/// of its opposite if `bothSides`), and it shines up to `cosReach` from each of them: a sphere has spread -1 and reach
-/// 0, a triangle 1 and 0, a spot 1 and the cosine of its cone.
-struct LightBounds {
-    Bounds3 box;
-    Vec3 axis{0, 0, 1};
-    float cosSpread = 1, cosReach = 0;
-    bool bothSides = false;
-    float intensity = 0;  ///< W/sr, luminance, where it shines most
-};
-
-/// The bounds of both.
-LightBounds unite(const LightBounds& a, const LightBounds& b);
 
 /// A tree over lights at finite places, from which one is drawn by its importance to a point
 /// [Conty Estevez & Kulla 2018]: built top-down by the surface area orientation heuristic (section 4.4) over bins.

@@ -182,8 +182,16 @@ void pickTogether(const LightTreeView& tree, const LightTreePoint* points, const
         walkers[i] = {i, 0, u[i], 0, 0, true};
         out[i] = LightTreeChoice();
     }
-    int drawing = 0;
+    int drawing = 0, asked = 0;
+    // What a drawer reads first is asked for a round after its group.
+    const auto askRanks = [&](int end) {
+        for (; asked < end; ++asked) {
+            const LightTreeRank* const rank = &tree.ranks[guessIn(*drawers[asked].group, drawers[asked].u)];
+            __builtin_prefetch(rank), __builtin_prefetch(rank + 1);
+        }
+    };
     while (count > 0) {
+        const int before = drawing;
         for (int i = 0; i < count; ++i) importance(tree.nodes[walkers[i].node], points[walkers[i].point], weights[i]);
         int kept = 0;
         for (int i = 0; i < count; ++i) {
@@ -195,8 +203,9 @@ void pickTogether(const LightTreeView& tree, const LightTreePoint* points, const
             drawing += step == Step::Draws ? 1 : 0;
         }
         count = kept;
+        askRanks(before);
     }
-    for (int i = 0; i < drawing; ++i) __builtin_prefetch(&tree.ranks[guessIn(*drawers[i].group, drawers[i].u)]);
+    askRanks(drawing);
     for (int i = 0; i < drawing; ++i) {
         Drawer& drawer = drawers[i];
         LightTreeChoice& choice = out[drawer.point];
@@ -215,22 +224,21 @@ void pick(const LightTreeView& tree, const LightTreePoint* points, const float* 
 }
 
 float probability(const LightTreeView& tree, const LightTreePoint& point, float elsewhere, const LightTreeWay& way) {
-    float product = way.length > 0 ? 1 : 0;
+    float product = way.columns > 0 ? 1 : 0;
     uint32_t at = 0;
-    uint64_t columns = way.columns;
-    for (uint32_t i = 0; i < way.length; ++i, columns >>= LightTreeWay::kBits) {
+    for (uint64_t columns = way.columns; columns > LightTreeWay::kEnd; columns >>= LightTreeWay::kBits) {
         const LightTreeNode& node = tree.nodes[at];
         const auto column = static_cast<int>(columns & (kWidth - 1));
         alignas(64) float weights[kWidth];
         importance(node, point, weights);
         const float sum = sumOf(weights);
         if (!(weights[column] > 0)) return 0;
-        if (i == 0) product *= shareOf(sum, elsewhere);
+        if (at == 0) product *= shareOf(sum, elsewhere);
         product *= weights[column] / sum;
-        if (i + 1 < way.length && isFar(node, column, point)) {
+        const bool last = columns >> LightTreeWay::kBits == LightTreeWay::kEnd;
+        if (!last && isFar(node, column, point)) {
             const LightTreeGroup& group = tree.groups[at * kWidth + static_cast<uint32_t>(column)];
-            const double own = tree.ranks[way.rank + 1].before - tree.ranks[way.rank].before;
-            return product * static_cast<float>(own / group.intensity);
+            return product * static_cast<float>(way.intensity / group.intensity);
         }
         at = node.child[column];
     }

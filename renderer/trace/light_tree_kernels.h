@@ -34,12 +34,12 @@ struct LightTreeRank {
     uint32_t light = 0;
 };
 
-/// The way from the root to a light.
-struct LightTreeWay {
-    static constexpr uint32_t kBits = 3, kMost = 64 / kBits;
-    uint64_t columns = 0;  ///< kBits a node, the root's last
-    uint32_t length = 0;   ///< nodes; 0: no way leads there, the light has no intensity
-    uint32_t rank = 0;     ///< in the order
+/// The way from the root to a light, and all else that its probability asks of it.
+struct alignas(16) LightTreeWay {
+    static constexpr uint32_t kBits = 3, kMost = 63 / kBits;
+    static constexpr uint64_t kEnd = 1;
+    uint64_t columns = 0;  ///< kBits a node, the root's last, kEnd above them; 0: no way leads there, it has no intensity
+    double intensity = 0;  ///< as it is drawn from a group
 };
 
 /// A tree as the kernels read it.
