@@ -4,6 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "math/transform.h"
+#include "scene/camera_frame.h"
 
 namespace lumi {
 
@@ -21,8 +22,8 @@ Vec3 rightOf(const Camera& camera) {
 
 /// `direction` turned by yaw around up and by pitch around right, kept off the poles.
 Vec3 turned(const Camera& camera, const Vec3& direction, float yaw, float pitch) {
-    const Vec3 up = glm::normalize(camera.up);
-    const float fromUp = std::acos(std::clamp(glm::dot(glm::normalize(direction), up), -1.0f, 1.0f));
+    const Vec3 up = unitUp(camera);
+    const float fromUp = std::acos(std::clamp(glm::dot(viewDirection(camera), up), -1.0f, 1.0f));
     const float newFromUp = std::clamp(fromUp - pitch, kNearestToPole, kPi - kNearestToPole);
     const Vec3 pitched = rotated(direction, fromUp - newFromUp, rightOf(camera));
     return rotated(pitched, yaw, up);
@@ -31,13 +32,14 @@ Vec3 turned(const Camera& camera, const Vec3& direction, float yaw, float pitch)
 }  // namespace
 
 Camera lookAround(Camera camera, float yaw, float pitch) {
-    camera.target = camera.eye + turned(camera, camera.target - camera.eye, yaw, pitch);
+    const Vec3 arm = camera.target - camera.eye;
+    camera.target = camera.eye + turned(camera, isBlack(arm) ? viewDirection(camera) : arm, yaw, pitch);
     return camera;
 }
 
 Camera flyBy(Camera camera, const Vec3& rightUpForward) {
     const Mat4 frame = lookAt(camera.eye, camera.target, camera.up);
-    const Vec3 move = Vec3(frame[0]) * rightUpForward.x + glm::normalize(camera.up) * rightUpForward.y -
+    const Vec3 move = Vec3(frame[0]) * rightUpForward.x + unitUp(camera) * rightUpForward.y -
                       Vec3(frame[2]) * rightUpForward.z;
     camera.eye += move;
     camera.target += move;

@@ -25,11 +25,21 @@ Mat3 normalMatrix(const Mat4& m) {
 
 bool isMirroring(const Mat4& m) { return glm::dot(Vec3(m[0]), glm::cross(Vec3(m[1]), Vec3(m[2]))) < 0; }
 
+namespace {
+
+/// `v` made unit, however long or short it is; `otherwise` if it has no direction.
+Vec3 unitOr(const Vec3& v, const Vec3& otherwise) {
+    const float length = glm::length(v), largest = maxComponent(glm::abs(v));
+    if (length > 1e-18f && length < 1e18f) return v / length;  // its square is a plain float
+    return largest > 0 && isFinite(v) ? glm::normalize(v / largest) : otherwise;
+}
+
+}  // namespace
+
 Mat4 lookAt(const Vec3& eye, const Vec3& target, const Vec3& up) {
-    Vec3 back = eye - target;
-    const float distance = glm::length(back);
-    back = distance > 0 ? back / distance : Vec3(0, 0, 1);
-    Vec3 right = glm::cross(up, back);
+    const Vec3 back = unitOr(eye - target, Vec3(0, 0, 1));
+    const float height = glm::length(up);
+    Vec3 right = glm::cross(height > 1e-3f && height < 1e6f ? up : unitOr(up, Vec3(0, 1, 0)), back);
     if (glm::length(right) < 1e-6f) right = glm::cross(std::abs(back.z) < 0.9f ? Vec3(0, 0, 1) : Vec3(1, 0, 0), back);
     right = glm::normalize(right);
     return Mat4(Vec4(right, 0), Vec4(glm::cross(back, right), 0), Vec4(back, 0), Vec4(eye, 1));

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "math/transform.h"
+#include "scene/camera_frame.h"
 
 namespace lumi {
 namespace {
@@ -21,10 +23,12 @@ Extent2 smallExtent(const RenderSettings& render) {
     return {side(render.width), side(render.height)};
 }
 
-/// The camera on a circle around its target, about its up direction.
+/// The camera on a circle around its target, about its up direction; one that looks along that turns about the image's up.
 Camera orbited(Camera camera, float degrees) {
     const float angle = glm::radians(degrees);
-    const Vec3 axis = glm::normalize(camera.up), arm = camera.eye - camera.target;
+    const Vec3 up = unitUp(camera), arm = camera.eye - camera.target;
+    const bool along = glm::length(glm::cross(up, arm)) <= 1e-6f * glm::length(arm);
+    const Vec3 axis = along ? Vec3(lookAt(camera.eye, camera.target, up)[1]) : up;
     camera.eye = camera.target + arm * std::cos(angle) + glm::cross(axis, arm) * std::sin(angle) +
                  axis * (glm::dot(axis, arm) * (1 - std::cos(angle)));
     return camera;

@@ -128,6 +128,13 @@ class Info(CommandTest):
         self.assertEqual(text.count("  good "), 24)
         self.assertNotIn("BROKEN", text)
 
+    def test_the_signals_hold_with_an_up_direction_that_is_none(self):
+        # Without length, along the view, and at the eye itself.
+        for camera in ("up=0,0,0", "up=0,0,-1", "look-at=0,2.73,8"):
+            info = self.good("info", "cornell", "--check", "--json", "--set", "render.width=64", "--set",
+                             "render.height=36", "--set", "camera." + camera).json
+            self.assertTrue(all(check["holds"] for check in info["checks"]), (camera, info["checks"]))
+
     def test_warnings_are_told(self):
         (self.folder / "dark.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         info = self.good("info", "dark.obj", "--json").json

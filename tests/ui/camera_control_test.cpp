@@ -32,6 +32,18 @@ TEST(CameraControl, pitchRaisesTheViewAndStopsAtThePole) {
     EXPECT_LT(direction.z, 0) << "it tipped over";
 }
 
+TEST(CameraControl, aCameraWithoutUpOrViewStillMoves) {
+    for (const Vec3& up : {Vec3(0), Vec3(0, 0, -1), Vec3(0, 1, 0)})
+        for (const Vec3& target : {front().target, front().eye}) {
+            Camera camera = front();
+            camera.up = up, camera.target = target;
+            for (const Camera& moved : {lookAround(camera, 0.1f, 0.1f), orbit(camera, 0.1f, 0.1f), flyBy(camera, {1, 2, 3})})
+                EXPECT_TRUE(isFinite(moved.eye) && isFinite(moved.target));
+            EXPECT_NE(lookAround(camera, 0.1f, 0.2f).target, camera.target);
+            EXPECT_GT(glm::distance(flyBy(camera, {0, 1, 0}).eye, camera.eye), 0.99f);
+        }
+}
+
 TEST(CameraControl, orbitKeepsTargetAndDistance) {
     const Camera moved = orbit(front(), 1.1f, -0.4f);
     EXPECT_EQ(moved.target, front().target);

@@ -83,6 +83,18 @@ TEST(Transform, LookAtLooksAlongMinusZ) {
     EXPECT_TRUE(isFinite(Vec3(lookAt(Vec3(1), Vec3(1))[0])));
 }
 
+TEST(Transform, LookAtIsAFrameWhateverItIsGiven) {
+    const Vec3 vectors[] = {Vec3(0),          Vec3(0, 1, 0),        Vec3(0, 0, 1),        Vec3(1e-30f, 0, 0), Vec3(3e38f, -3e38f, 0),
+                            Vec3(0, 1e20f, 0), Vec3(1e-9f, 1, 1e-9f), Vec3(1e9f, 1e9f, -1e9f), Vec3(kInfinity, 0, 0)};
+    for (const Vec3& eye : vectors)
+        for (const Vec3& target : vectors)
+            for (const Vec3& up : vectors) {
+                const Mat3 m(lookAt(eye, target, up));
+                expectNear(m * glm::transpose(m) * Vec3(1, 2, 3), Vec3(1, 2, 3), 1e-4f);
+            }
+    expectNear(Vec3(lookAt({0, 0, 5}, {0, 0, 0}, {0, 0, 0})[1]), {0, 1, 0}, 1e-6f);
+}
+
 TEST(Transform, FramesAreRightHandedAndOrthonormal) {
     for (uint32_t i = 0; i < 2000; ++i) {
         const Vec3 z = i == 0 ? Vec3(0, 0, -1) : i == 1 ? Vec3(0, 0, 1) : randomDirection(i);
