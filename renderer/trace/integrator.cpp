@@ -155,7 +155,7 @@ void Integrator::findHits(PathBatch& batch, int depth, bool coherent, TraceCount
 /// A part of the batch that the lanes can hold.
 void Integrator::shadeRows(PathBatch& batch, Rows rows, int depth, std::span<const SurfacePoint> firstPoints) const {
     const bool given = !firstPoints.empty();
-    batch.plain.glossy = false;
+    batch.plain.glossy = batch.plain.textured = batch.plain.mapped = false;
     if (!given) arrive(batch, rows, depth);
     for (uint32_t row = rows.begin; row < rows.end; ++row) {
         if (depth < needs_.vertexDepths) batch.vertexOf[batch.active[row]] = row;

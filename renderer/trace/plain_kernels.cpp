@@ -74,7 +74,7 @@ LUMI_LANE Lane3 unitOr(Lane3 v, Lane3 other) {
     return choose(some, v * (1 / std::sqrt(some ? length2 : 1.0f)), other);
 }
 
-void place(Lanes& lanes) {
+void placeSurfaces(Lanes& lanes) {
     const int count = lanes.count;
 #pragma GCC ivdep
     for (int i = 0; i < count; ++i) {
@@ -89,15 +89,28 @@ void place(Lanes& lanes) {
         lanes.area[i] = 0.5f * twiceArea;
         lanes.front[i] = cosine >= 0 ? 1.0f : 0.0f;
         put(lanes.smoothNormal, i, unitOr(at(lanes.vertexNormal, i), outward));
+    }
+}
 
-        // Footprint on the surface, metres, and in the texture.
-        const float footprint = lanes.width[i] / std::sqrt(most(std::fabs(cosine), 0.04f));
+/// Texture coordinates, and the footprint in them.
+void placeTextures(Lanes& lanes) {
+    const int count = lanes.count;
+#pragma GCC ivdep
+    for (int i = 0; i < count; ++i) {
+        const float b1 = lanes.across[i], b2 = lanes.along[i], twiceArea = 2 * lanes.area[i];
+        const float cosine = dot(at(lanes.geometricNormal, i), at(lanes.wo, i));
+        const float footprint = lanes.width[i] / std::sqrt(most(std::fabs(cosine), 0.04f));  // on the surface, metres
         const float u1 = lanes.edge1U[i], v1 = lanes.edge1V[i], u2 = lanes.edge2U[i], v2 = lanes.edge2V[i];
         lanes.textureU[i] = lanes.cornerU[i] + u1 * b1 + u2 * b2;
         lanes.textureV[i] = lanes.cornerV[i] + v1 * b1 + v2 * b2;
         const float density = std::fabs(u1 * v2 - v1 * u2) / (twiceArea > 0 ? twiceArea : 1.0f);
         lanes.textureWidth[i] = twiceArea > 0 ? footprint * std::sqrt(density) : 0.0f;
     }
+}
+
+void place(Lanes& lanes) {
+    placeSurfaces(lanes);
+    if (lanes.textured) placeTextures(lanes);
 }
 
 /// Direction across `normal` in which u grows and v stays, any length; 0 where there is none. `c1` and `c2` are the differences
@@ -109,40 +122,51 @@ LUMI_LANE Lane3 uvGradient(const Lanes& lanes, int i, Lane3 normal, float c2, fl
     return along - normal * dot(normal, along);
 }
 
-void bend(Lanes& lanes) {
+/// The shading normal by the normal map, where there is one; unit, of the front face.
+LUMI_LANE Lane3 mappedNormal(const Lanes& lanes, int i, Lane3 smooth) {
+    const bool derived = lanes.tangents[i] == Lanes::kDerived;
+    const Lane3 tangent =
+        choose(derived, uvGradient(lanes, i, smooth, lanes.edge2V[i], lanes.edge1V[i]), at(lanes.tangent, i));
+    const Lane3 bitangent =
+        choose(derived, uvGradient(lanes, i, smooth, lanes.edge2U[i], lanes.edge1U[i]), at(lanes.bitangent, i));
+    const float lengthT = std::sqrt(dot(tangent, tangent)), lengthB = std::sqrt(dot(bitangent, bitangent));
+    const bool mapped =
+        (lanes.tangents[i] != Lanes::kNone) & (lengthT > 0) & (lengthB > 0) & finite(lengthT + lengthB);
+    const Lane3 texel = at(lanes.mapTexel, i);
+    const Lane3 sum = tangent * (texel.x / (mapped ? lengthT : 1.0f)) +
+                      bitangent * (texel.y / (mapped ? lengthB : 1.0f)) + smooth * texel.z;
+    const float length = std::sqrt(dot(sum, sum));
+    const bool usable = mapped & (length > 1e-6f) & finite(length);
+    return choose(usable, sum * (1 / (usable ? length : 1.0f)), smooth);
+}
+
+/// The normal that shades: `normal` on wo's side, and bent so that the mirror direction stays above the surface [Keller et
+/// al. 2017].
+LUMI_LANE Lane3 keptAbove(const Lanes& lanes, int i, Lane3 normal) {
     // Height above the surface, in half precision, that the reflection off a bent normal keeps.
     constexpr float kLeastHeight = 1e-3f;
-    const int count = lanes.count;
-#pragma GCC ivdep
-    for (int i = 0; i < count; ++i) {
-        // The normal map's.
-        const Lane3 smooth = at(lanes.smoothNormal, i);
-        const bool derived = lanes.derived[i] > 0;
-        const Lane3 tangent =
-            choose(derived, uvGradient(lanes, i, smooth, lanes.edge2V[i], lanes.edge1V[i]), at(lanes.tangent, i));
-        const Lane3 bitangent =
-            choose(derived, uvGradient(lanes, i, smooth, lanes.edge2U[i], lanes.edge1U[i]), at(lanes.bitangent, i));
-        const float lengthT = std::sqrt(dot(tangent, tangent)), lengthB = std::sqrt(dot(bitangent, bitangent));
-        const bool mapped = (lengthT > 0) & (lengthB > 0) & finite(lengthT + lengthB);
-        const Lane3 texel = at(lanes.mapTexel, i);
-        const Lane3 sum = tangent * (texel.x / (mapped ? lengthT : 1.0f)) +
-                          bitangent * (texel.y / (mapped ? lengthB : 1.0f)) + smooth * texel.z;
-        const float length = std::sqrt(dot(sum, sum));
-        const bool usable = mapped & (length > 1e-6f) & finite(length);
-        const Lane3 normal = choose(usable, sum * (1 / (usable ? length : 1.0f)), smooth);
+    // One that points away from the geometric normal altogether is a modelling slip.
+    const Lane3 geometric = at(lanes.geometricNormal, i), wo = at(lanes.wo, i);
+    const float sign = lanes.front[i] > 0 ? 1.0f : -1.0f;
+    const Lane3 shading = normal * (sign * dot(normal, geometric) < 0 ? -sign : sign);
+    const float cosine = dot(wo, shading);
+    const Lane3 mirrored = shading * (2 * cosine) - wo;
+    const float height = dot(mirrored, geometric);
+    const Lane3 lifted = mirrored + geometric * (kLeastHeight - height);
+    const Lane3 bent = unitOr(wo + unitOr(lifted, geometric), geometric);
+    return choose((height >= kLeastHeight) & (cosine > 0), shading, bent);
+}
 
-        // On wo's side; a normal that points away from the geometric one altogether is a modelling slip.
-        const Lane3 geometric = at(lanes.geometricNormal, i), wo = at(lanes.wo, i);
-        const float sign = lanes.front[i] > 0 ? 1.0f : -1.0f;
-        const Lane3 shading = normal * (sign * dot(normal, geometric) < 0 ? -sign : sign);
-        // Bent so that the mirror direction stays above the surface [Keller et al. 2017].
-        const float cosine = dot(wo, shading);
-        const Lane3 mirrored = shading * (2 * cosine) - wo;
-        const float height = dot(mirrored, geometric);
-        const Lane3 lifted = mirrored + geometric * (kLeastHeight - height);
-        const Lane3 bent = unitOr(wo + unitOr(lifted, geometric), geometric);
-        put(lanes.normal, i, choose((height >= kLeastHeight) & (cosine > 0), shading, bent));
+void bend(Lanes& lanes) {
+    const int count = lanes.count;
+    if (!lanes.mapped) {
+#pragma GCC ivdep
+        for (int i = 0; i < count; ++i) put(lanes.normal, i, keptAbove(lanes, i, at(lanes.smoothNormal, i)));
+        return;
     }
+#pragma GCC ivdep
+    for (int i = 0; i < count; ++i)
+        put(lanes.normal, i, keptAbove(lanes, i, mappedNormal(lanes, i, at(lanes.smoothNormal, i))));
 }
 
 void prepare(Lanes& lanes, const AlbedoView& view, const PlainSettings& settings) {

@@ -26,6 +26,8 @@ struct alignas(64) PlainLanes {
 
     int count = 0;
     bool glossy = false;    ///< some lane is metallic or has a specular layer; else all are diffuse
+    bool textured = false;  ///< some lane has textures: the columns of texture coordinates are set
+    bool mapped = false;    ///< some lane has a normal map
     Words row;              ///< of the batch
     Words scramble, index;  ///< of the path's random numbers
     uint64_t seeds[kMost];  ///< scratch
@@ -41,8 +43,9 @@ struct alignas(64) PlainLanes {
     Column area;                ///< of the triangle, m^2
     Column front;               ///< 1: wo is on the front side; else 0
     Column3 smoothNormal;       ///< unit, of the front face
-    Column3 tangent, bitangent; ///< any length; 0: no normal map, unless they are
-    Column derived;             ///< 1: along growing u and falling v; else 0
+    Column tangents;            ///< for the normal map: kNone, kGiven, kDerived
+    static constexpr float kNone = 0, kGiven = 1, kDerived = 2;  ///< the last: along growing u and falling v
+    Column3 tangent, bitangent; ///< any length, if they are given
     Column3 mapTexel;           ///< of the normal map, scale applied
 
     // Where the path is: as in Surface and BsdfInputs.

@@ -23,6 +23,12 @@ void collectTangents(const InstanceRecord& r, const UVec3& t, const Vec3& object
     lanes.bitangent.set(i, directions * (glm::cross(objectNormal, tangent) * hand));
 }
 
+void collectTextureCoordinates(const Vec2* uv, const UVec3& t, PlainLanes& lanes, int i) {
+    const Vec2 a = uv ? uv[t.x] : Vec2(0), d1 = uv ? uv[t.y] - a : Vec2(0), d2 = uv ? uv[t.z] - a : Vec2(0);
+    lanes.cornerU[i] = a.x, lanes.cornerV[i] = a.y;
+    lanes.edge1U[i] = d1.x, lanes.edge1V[i] = d1.y, lanes.edge2U[i] = d2.x, lanes.edge2V[i] = d2.y;
+}
+
 }  // namespace
 
 void collectTriangle(const InstanceRecord& r, const MaterialRecord& material, const RawHit& hit, PlainLanes& lanes, int i) {
@@ -37,16 +43,12 @@ void collectTriangle(const InstanceRecord& r, const MaterialRecord& material, co
     lanes.offset[i] = r.inWorld ? 0 : r.objectScale * 0x1p-18f;
     Vec3 normal(0);
     if (r.normals) normal = interpolate(r.normals, t, hit.u, hit.v);
-    lanes.vertexNormal.set(i, r.normalFromObject * normal);
+    lanes.vertexNormal.set(i, r.normals ? r.normalFromObject * normal : Vec3(0));
     const bool mapped = material.views[MaterialRecord::kNormalView] >= 0;
-    lanes.derived[i] = mapped && !r.tangents ? 1.0f : 0.0f;
+    lanes.tangents[i] = !mapped ? PlainLanes::kNone : r.tangents ? PlainLanes::kGiven : PlainLanes::kDerived;
     if (mapped && r.tangents) collectTangents(r, t, normal, hit, lanes, i);
-    else lanes.tangent.set(i, Vec3(0)), lanes.bitangent.set(i, Vec3(0));
-
-    const Vec2* uv = material.textures != 0 ? r.uv[material.uvSet] : nullptr;
-    const Vec2 a = uv ? uv[t.x] : Vec2(0), d1 = uv ? uv[t.y] - a : Vec2(0), d2 = uv ? uv[t.z] - a : Vec2(0);
-    lanes.cornerU[i] = a.x, lanes.cornerV[i] = a.y;
-    lanes.edge1U[i] = d1.x, lanes.edge1V[i] = d1.y, lanes.edge2U[i] = d2.x, lanes.edge2V[i] = d2.y;
+    lanes.mapped |= mapped;
+    if (material.textures != 0) collectTextureCoordinates(r.uv[material.uvSet], t, lanes, i), lanes.textured = true;
 
     Vec3 baseColor = material.baseColor;
     if (r.colours) baseColor *= Vec3(interpolate(r.colours, t, hit.u, hit.v));
