@@ -12,12 +12,23 @@
 
 namespace lumi {
 
+class ParameterVisitor;
+
 /// How far a load has come; called from any thread, `fraction` in [0,1], `step` names what is being done.
 using LoadProgress = std::function<void(float fraction, const std::string& step)>;
+
+/// How an OBJ is subdivided.
+enum class SubdivisionScheme { Auto, None, CatmullClark };
+struct Subdivision {
+    SubdivisionScheme scheme = SubdivisionScheme::Auto;  ///< Auto: where the file has OpenSubdiv's tags
+    int rate = 8;                                        ///< segments along every edge of the cage
+    void describe(ParameterVisitor& v);
+};
 
 struct LoadOptions {
     int sceneIndex = -1;     ///< glTF: which scene; -1 is the file's default
     std::string variant;     ///< KHR_materials_variants, by name; empty is the default
+    Subdivision subdivision; ///< OBJ
     LoadProgress progress;
     std::stop_token stop;    ///< a stopped load throws Error(Interrupted)
 };

@@ -7,7 +7,6 @@
 #include "base/files.h"
 #include "base/parallel.h"
 #include "scene/gltf/load_gltf.h"
-#include "scene/obj/cage.h"
 #include "scene/obj/load_obj.h"
 #include "scene/procedural/procedural.h"
 #include "scene/scene_file_parts.h"
@@ -67,29 +66,17 @@ AssetSource readAsset(SceneFileContext& context, const JsonMember& member) {
     return source;
 }
 
-/// The limit surface of an OBJ cage as a scene of one instance with one slot.
-Scene loadSubdivided(const SceneFileContext& context, const std::filesystem::path& path, const Subdivision& subdivision) {
-    const std::vector<uint8_t> bytes = readFile(path);
-    SubdivisionCage cage = loadCage(path, context.log);
-    cage.faceMaterials.clear();
-    cage.material = 0;
-    SubdivisionSurface surface = tessellate(cage, subdivision.rate, path.string());
-    Scene scene = sceneFromProcedural(singleMesh(std::move(surface.mesh)));
-    scene.contentDigest = digest(bytes);
-    return scene;
-}
-
 Scene loadAssetFile(const SceneFileContext& context, const AssetSource& source, float begin, float end) {
     LoadOptions options = context.options;
     options.sceneIndex = source.sceneIndex;
     options.variant = source.variant;
+    options.subdivision = source.subdivision;
     if (context.options.progress)
         options.progress = [&](float fraction, const std::string& step) {
             context.options.progress(begin + fraction * (end - begin), step);
         };
     try {
         const std::filesystem::path path = context.resolve(source.file);
-        if (source.subdivision.scheme != SubdivisionScheme::None) return loadSubdivided(context, path, source.subdivision);
         return source.kind == "gltf" ? loadGltf(path, context.log, options) : loadObj(path, context.log, options);
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::Interrupted) throw;
@@ -134,8 +121,9 @@ void buildGenerated(SceneFileContext& context, const std::vector<AssetSource*>& 
 }  // namespace
 
 void Subdivision::describe(ParameterVisitor& v) {
-    v.choice("subdivision", scheme, {.label = "Subdivision", .options = {"none", "catmull-clark"},
-                                     .help = "Whether the OBJ is a control cage of a smooth surface.",
+    v.choice("subdivision", scheme, {.label = "Subdivision", .options = {"auto", "none", "catmull-clark"},
+                                     .help = "Whether the OBJ is a control cage of a smooth surface; auto: where it has "
+                                             "OpenSubdiv's tags (t or #t lines).",
                                      .redo = Redo::Build});
     v.when(scheme != SubdivisionScheme::None, [&] {
         v.integer("rate", rate, {.label = "Rate", .min = 1, .max = 64, .scale = Scale::Log,

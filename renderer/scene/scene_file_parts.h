@@ -71,14 +71,6 @@ extern const TextureKey kRadianceTexture;
 /// Loads or generates one texture by itself.
 Texture readTexture(SceneFileContext&, const JsonValue& value, const TextureKey& key);
 
-/// How an OBJ of "assets" is subdivided.
-enum class SubdivisionScheme { None, CatmullClark };
-struct Subdivision {
-    SubdivisionScheme scheme = SubdivisionScheme::None;
-    int rate = 8;
-    void describe(ParameterVisitor& v);
-};
-
 /// Placement of a texture on a surface: scale, offset, rotate-deg, wrap, filter, uv-set.
 struct TexturePlacement {
     Vec2 offset{0}, scale{1};

@@ -1,8 +1,10 @@
 #pragma once
 #include <opensubdiv/far/primvarRefiner.h>
 
+#include <filesystem>
 #include <vector>
 
+#include "base/files.h"
 #include "scene/obj/cage.h"
 #include "scene/subdivision.h"
 #include "scene/subdivision_topology.h"
@@ -12,6 +14,10 @@ namespace lumi::test {
 inline SubdivisionCage cageOf(const std::string& text, const std::string& where) {
     MessageLog log;
     return parseCage(text, where, log);
+}
+
+inline SubdivisionCage loadCage(const std::filesystem::path& path, MessageLog& log) {
+    return parseCage(readTextFile(path), path.string(), log);
 }
 
 /// A value that OpenSubdiv's refiner interpolates.

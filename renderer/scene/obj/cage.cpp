@@ -1,22 +1,16 @@
 #include "scene/obj/cage.h"
 
 #include <fmt/format.h>
-#include <tiny_obj_loader.h>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
 
 #include "base/error.h"
-#include "base/files.h"
 #include "scene/obj/number_check.h"
 
 namespace lumi {
 namespace {
-
-/// `#t` at the beginning of a line becomes ` t`: files that keep the tags as comments.
-void uncommentTags(std::string& text) {
-    for (size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) {
-        if (text.compare(at, 3, "#t ") == 0) text[at] = ' ';
-        if (text.find('\n', at) == std::string::npos) break;
-    }
-}
 
 void addCreases(const tinyobj::tag_t& tag, SubdivisionCage& cage) {
     for (size_t i = 0; i + 1 < tag.intValues.size(); ++i) {
@@ -37,23 +31,90 @@ void addCorners(const tinyobj::tag_t& tag, SubdivisionCage& cage) {
 
 int firstInt(const tinyobj::tag_t& tag) { return tag.intValues.empty() ? 0 : tag.intValues[0]; }
 
-void applyTag(const tinyobj::tag_t& tag, SubdivisionCage& cage) {
+/// False if there is no such tag.
+bool applyTag(const tinyobj::tag_t& tag, SubdivisionCage& cage) {
     using Boundary = SubdivisionCage::Boundary;
     if (tag.name == "crease") addCreases(tag, cage);
-    if (tag.name == "corner") addCorners(tag, cage);
-    if (tag.name == "hole" && !tag.intValues.empty()) cage.holes.push_back(static_cast<uint32_t>(tag.intValues[0]));
-    if (tag.name == "interpolateboundary") {
+    else if (tag.name == "corner") addCorners(tag, cage);
+    else if (tag.name == "hole") {
+        if (!tag.intValues.empty()) cage.holes.push_back(static_cast<uint32_t>(tag.intValues[0]));
+    } else if (tag.name == "interpolateboundary") {
         constexpr Boundary kRules[] = {Boundary::None, Boundary::EdgeAndCorner, Boundary::EdgeOnly};
         const int rule = firstInt(tag);
         if (rule >= 0 && rule < 3) cage.boundary = kRules[rule];
+    } else if (tag.name == "facevaryinginterpolateboundary") {
+        if (firstInt(tag) >= 0 && firstInt(tag) < 6)
+            cage.faceVarying = static_cast<SubdivisionCage::FaceVarying>(firstInt(tag));
+    } else if (tag.name == "creasemethod") {
+        cage.chaikin = !tag.stringValues.empty() && tag.stringValues[0] == "chaikin";
+    } else if (tag.name == "smoothtriangles") {
+        cage.smoothTriangles = firstInt(tag) != 0;
+    } else {
+        return false;
     }
-    if (tag.name == "facevaryinginterpolateboundary" && firstInt(tag) >= 0 && firstInt(tag) < 6)
-        cage.faceVarying = static_cast<SubdivisionCage::FaceVarying>(firstInt(tag));
-    if (tag.name == "creasemethod") cage.chaikin = !tag.stringValues.empty() && tag.stringValues[0] == "chaikin";
-    if (tag.name == "smoothtriangles") cage.smoothTriangles = firstInt(tag) != 0;
+    return true;
+}
+
+void addFaces(const tinyobj::mesh_t& mesh, uint32_t fallbackMaterial, const std::string& where, SubdivisionCage& cage) {
+    // tinyobj keeps a face's number of corners in a byte, which larger faces overflow.
+    const uint64_t corners = std::accumulate(mesh.num_face_vertices.begin(), mesh.num_face_vertices.end(), uint64_t(0));
+    if (corners != mesh.indices.size()) throwBadInput({"a face has too many corners", where, "at most 255", ""});
+    cage.faceSizes.insert(cage.faceSizes.end(), mesh.num_face_vertices.begin(), mesh.num_face_vertices.end());
+    for (size_t face = 0; face < mesh.num_face_vertices.size(); ++face) {
+        const int material = face < mesh.material_ids.size() ? mesh.material_ids[face] : -1;
+        cage.faceMaterials.push_back(material < 0 ? fallbackMaterial : static_cast<uint32_t>(material));
+    }
+    for (const tinyobj::index_t& index : mesh.indices) {
+        if (index.vertex_index < 0) throwBadInput({"a face names a vertex that does not exist", where, "", ""});
+        cage.faceVertices.push_back(static_cast<uint32_t>(index.vertex_index));
+        cage.faceUvs.push_back(static_cast<uint32_t>(std::max(index.texcoord_index, 0)));
+    }
+}
+
+bool everyCornerHasUv(const std::vector<tinyobj::shape_t>& shapes) {
+    for (const tinyobj::shape_t& shape : shapes)
+        for (const tinyobj::index_t& index : shape.mesh.indices)
+            if (index.texcoord_index < 0) return false;
+    return true;
 }
 
 }  // namespace
+
+void uncommentTags(std::string& text) {
+    for (size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) {
+        if (text.compare(at, 3, "#t ") == 0) text[at] = ' ';
+        if (text.find('\n', at) == std::string::npos) break;
+    }
+}
+
+bool hasTags(const std::vector<tinyobj::shape_t>& shapes) {
+    return std::any_of(shapes.begin(), shapes.end(), [](const tinyobj::shape_t& shape) { return !shape.mesh.tags.empty(); });
+}
+
+SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<tinyobj::shape_t>& shapes,
+                       uint32_t fallbackMaterial, const std::string& where, MessageLog& log) {
+    SubdivisionCage cage;
+    cage.name = where;
+    cage.boundary = SubdivisionCage::Boundary::EdgeOnly;
+    for (size_t i = 0; i + 2 < attributes.vertices.size(); i += 3)
+        cage.positions.emplace_back(attributes.vertices[i], attributes.vertices[i + 1], attributes.vertices[i + 2]);
+    std::set<std::string> unknown;
+    for (const tinyobj::shape_t& shape : shapes) {
+        addFaces(shape.mesh, fallbackMaterial, where, cage);
+        for (const tinyobj::tag_t& tag : shape.mesh.tags)
+            if (!applyTag(tag, cage) && unknown.insert(tag.name).second)
+                log.warning(fmt::format("{}: the subdivision tag \"{}\" is not known and left out", where, tag.name));
+    }
+    if (cage.faceSizes.empty()) throwBadInput({"holds no faces", where, "a polygon cage", ""});
+    cage.material = cage.faceMaterials.front();
+    if (std::count(cage.faceMaterials.begin(), cage.faceMaterials.end(), cage.material) == std::ssize(cage.faceMaterials))
+        cage.faceMaterials.clear();
+    if (!attributes.texcoords.empty() && everyCornerHasUv(shapes))
+        for (size_t i = 0; i + 1 < attributes.texcoords.size(); i += 2)
+            cage.uvs.emplace_back(attributes.texcoords[i], 1 - attributes.texcoords[i + 1]);
+    else cage.faceUvs.clear();
+    return cage;
+}
 
 SubdivisionCage parseCage(std::string text, const std::string& where, MessageLog& log) {
     checkObjNumbers(text, where, log);
@@ -64,38 +125,7 @@ SubdivisionCage parseCage(std::string text, const std::string& where, MessageLog
     tinyobj::ObjReader reader;
     if (!reader.ParseFromString(text, "", config))
         throwBadInput({"is not a readable OBJ file", where, "", reader.Error().substr(0, reader.Error().find('\n'))});
-
-    SubdivisionCage cage;
-    cage.name = where;
-    cage.boundary = SubdivisionCage::Boundary::EdgeOnly;
-    const tinyobj::attrib_t& attributes = reader.GetAttrib();
-    for (size_t i = 0; i + 2 < attributes.vertices.size(); i += 3)
-        cage.positions.emplace_back(attributes.vertices[i], attributes.vertices[i + 1], attributes.vertices[i + 2]);
-    for (size_t i = 0; i + 1 < attributes.texcoords.size(); i += 2)
-        cage.uvs.emplace_back(attributes.texcoords[i], attributes.texcoords[i + 1]);
-
-    bool everyCornerHasUv = !cage.uvs.empty();
-    for (const tinyobj::shape_t& shape : reader.GetShapes()) {
-        // tinyobj keeps a face's number of corners in a byte, which larger faces overflow.
-        uint64_t corners = 0;
-        for (const auto size : shape.mesh.num_face_vertices) cage.faceSizes.push_back(size), corners += size;
-        if (corners != shape.mesh.indices.size())
-            throwBadInput({"a face has too many corners", where, "at most 255", ""});
-        for (const tinyobj::index_t& index : shape.mesh.indices) {
-            if (index.vertex_index < 0) throwBadInput({"a face names a vertex that does not exist", where, "", ""});
-            cage.faceVertices.push_back(static_cast<uint32_t>(index.vertex_index));
-            everyCornerHasUv = everyCornerHasUv && index.texcoord_index >= 0;
-            cage.faceUvs.push_back(static_cast<uint32_t>(std::max(index.texcoord_index, 0)));
-        }
-        for (const tinyobj::tag_t& tag : shape.mesh.tags) applyTag(tag, cage);
-    }
-    if (!everyCornerHasUv) cage.uvs.clear(), cage.faceUvs.clear();
-    if (cage.faceSizes.empty()) throwBadInput({"holds no faces", where, "a polygon cage", ""});
-    return cage;
-}
-
-SubdivisionCage loadCage(const std::filesystem::path& path, MessageLog& log) {
-    return parseCage(readTextFile(path), path.string(), log);
+    return cageOf(reader.GetAttrib(), reader.GetShapes(), 0, where, log);
 }
 
 }  // namespace lumi

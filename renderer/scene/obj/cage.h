@@ -1,16 +1,28 @@
 #pragma once
-#include <filesystem>
+#include <tiny_obj_loader.h>
+
 #include <string>
+#include <vector>
 
 #include "base/messages.h"
 #include "scene/subdivision.h"
 
 namespace lumi {
 
-/// Reads an OBJ as a subdivision cage: faces as they are, with OpenSubdiv's `t` tag lines (crease, corner, hole,
-/// interpolateboundary, facevaryinginterpolateboundary, creasemethod, smoothtriangles); `#t` lines count as tags too.
-/// Hierarchical edits are ignored. Several shapes become one cage. Throws Error(BadInput).
-SubdivisionCage loadCage(const std::filesystem::path& path, MessageLog& log);
+/// `#t` at the beginning of a line becomes ` t`: files that keep OpenSubdiv's tags as comments.
+void uncommentTags(std::string& objText);
+
+/// True if a shape has a tag.
+bool hasTags(const std::vector<tinyobj::shape_t>& shapes);
+
+/// All shapes of an OBJ as one subdivision cage: faces as they are, with OpenSubdiv's `t` tag lines (crease, corner, hole,
+/// interpolateboundary, facevaryinginterpolateboundary, creasemethod, smoothtriangles). Other tags are warnings; so are
+/// hierarchical edits, which are left out. Texture coordinates as in our meshes, v from the top. Materials by tinyobj's
+/// numbers; faces without one get `fallbackMaterial`. Throws Error(BadInput) headed by `where`.
+SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<tinyobj::shape_t>& shapes,
+                       uint32_t fallbackMaterial, const std::string& where, MessageLog& log);
+
+/// The same from text, without materials.
 SubdivisionCage parseCage(std::string objText, const std::string& where, MessageLog& log);
 
 }  // namespace lumi

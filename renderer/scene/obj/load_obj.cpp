@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "scene/obj/cage.h"
 #include "scene/obj/number_check.h"
 #include "scene/obj/obj_materials.h"
 #include "scene/obj/obj_mesh.h"
@@ -66,8 +67,10 @@ ParsedObj parse(const std::filesystem::path& path, MessageLog& log) {
     ParsedObj parsed;
     parsed.digest = digest64(bytes);
     checkObjNumbers({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, where, log);
-    std::istringstream text(std::string(bytes.begin(), bytes.end()));
+    std::string lines(bytes.begin(), bytes.end());
     bytes = {};
+    uncommentTags(lines);
+    std::istringstream text(std::move(lines));
     FolderMaterials materials(path.parent_path(), log, where, parsed.digest);
     std::string warning, error;
     try {
@@ -78,10 +81,48 @@ ParsedObj parse(const std::filesystem::path& path, MessageLog& log) {
     } catch (const std::bad_alloc&) {
         throw Error(ErrorKind::Resources, {.what = "not enough memory to read the file", .where = where});
     }
-    std::istringstream lines(warning);
-    for (std::string line; std::getline(lines, line);)
+    std::istringstream warnings(warning);
+    for (std::string line; std::getline(warnings, line);)
         if (!line.empty()) log.warning(where + ": " + line);
     return parsed;
+}
+
+/// All shapes as the limit surface of one cage, if that is asked for. Nothing where only the file's own tags ask for it and
+/// there is no limit surface.
+std::shared_ptr<Mesh> limitSurface(const ParsedObj& parsed, const Subdivision& subdivision, uint32_t fallback,
+                                   const std::string& where, MessageLog& log) {
+    const bool asked = subdivision.scheme == SubdivisionScheme::CatmullClark;
+    if (!asked && (subdivision.scheme == SubdivisionScheme::None || !hasTags(parsed.shapes))) return nullptr;
+    try {
+        const SubdivisionCage cage = cageOf(parsed.attributes, parsed.shapes, fallback, where, log);
+        auto mesh = std::make_shared<Mesh>(tessellate(cage, subdivision.rate, where).mesh);
+        mesh->name = "surface";
+        return mesh;
+    } catch (const Error& error) {
+        if (asked || error.kind() != ErrorKind::BadInput) throw;
+        log.warning(std::string(error.what()) + "; its polygons are shown as they are");
+        return nullptr;
+    }
+}
+
+/// The shapes as meshes, or the one that they are the cage of.
+std::vector<std::shared_ptr<Mesh>> buildMeshes(const ParsedObj& parsed, const std::vector<Material>& materials,
+                                               const Subdivision& subdivision, const std::string& where, MessageLog& log) {
+    const uint32_t fallback = static_cast<uint32_t>(materials.size() - 1);
+    std::vector<std::shared_ptr<Mesh>> meshes{limitSurface(parsed, subdivision, fallback, where, log)};
+    const bool subdivided = meshes.front() != nullptr;
+    if (!subdivided) meshes.resize(parsed.shapes.size());
+    parallelFor(static_cast<int64_t>(meshes.size()), [&](int64_t i) {
+        std::shared_ptr<Mesh>& mesh = meshes[static_cast<size_t>(i)];
+        if (!subdivided)
+            mesh = std::make_shared<Mesh>(meshFromShape(parsed.attributes, parsed.shapes[static_cast<size_t>(i)], fallback, where));
+        checkMesh(*mesh, where);
+        const auto needsTangents = [&](uint32_t m) { return bool(materials[m].normalTexture); };
+        const bool any = std::any_of(mesh->triangleMaterial.begin(), mesh->triangleMaterial.end(), needsTangents) ||
+                         (mesh->triangleMaterial.empty() && needsTangents(mesh->material));
+        if (any && !mesh->uv[0].empty() && !mesh->normals.empty()) computeTangents(*mesh);
+    });
+    return meshes;
 }
 
 }  // namespace
@@ -107,17 +148,7 @@ Scene loadObj(const std::filesystem::path& path, MessageLog& log, const LoadOpti
 
     step(0.7f, "Building meshes");
     const uint32_t fallback = static_cast<uint32_t>(scene.materials.size() - 1);
-    std::vector<std::shared_ptr<Mesh>> meshes(parsed.shapes.size());
-    parallelFor(static_cast<int64_t>(meshes.size()), [&](int64_t i) {
-        const size_t index = static_cast<size_t>(i);
-        auto mesh = std::make_shared<Mesh>(meshFromShape(parsed.attributes, parsed.shapes[index], fallback, where));
-        checkMesh(*mesh, where);
-        const auto needsTangents = [&](uint32_t m) { return bool(scene.materials[m].normalTexture); };
-        const bool any = std::any_of(mesh->triangleMaterial.begin(), mesh->triangleMaterial.end(), needsTangents) ||
-                         (mesh->triangleMaterial.empty() && needsTangents(mesh->material));
-        if (any && !mesh->uv[0].empty() && !mesh->normals.empty()) computeTangents(*mesh);
-        meshes[index] = std::move(mesh);
-    });
+    const std::vector<std::shared_ptr<Mesh>> meshes = buildMeshes(parsed, scene.materials, options.subdivision, where, log);
     bool usesFallback = false;
     for (size_t i = 0; i < meshes.size(); ++i) {
         if (meshes[i]->triangles.empty()) continue;

@@ -24,6 +24,13 @@ Scene loadText(const std::string& obj, const std::string& mtl = {}) {
     return loadText(obj, log, mtl);
 }
 
+// A square of two faces side by side, red and green, textured over all of it; as a cage its edges are creases.
+const std::string kTwoFaces = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 2 0\nv 1 2 0\nv 2 2 0\n"
+                              "vt 0 0\nvt .5 0\nvt 1 0\nvt 0 1\nvt .5 1\nvt 1 1\n"
+                              "usemtl red\nf 1/1 2/2 5/5 4/4\nusemtl green\nf 2/2 3/3 6/6 5/5\n";
+const std::string kRedAndGreen = "newmtl red\nKd 1 0 0\nnewmtl green\nKd 0 1 0\n";
+const std::string kTags = "#t interpolateboundary 1/0/0 1\n#t corner 4/1/0 0 2 3 5 10\n";
+
 float area(std::span<const Vec3> corners, const std::vector<UVec3>& triangles) {
     float sum = 0;
     for (const UVec3& t : triangles)
@@ -146,6 +153,48 @@ TEST(Obj, BadIndicesAreRefused) {
     TemporaryFolder folder;
     MessageLog log;
     expectError(ErrorKind::BadInput, [&] { loadObj(folder / "none.obj", log); }, {"none.obj"});
+}
+
+TEST(ObjCage, TagsMakeItOne) {
+    MessageLog log;
+    const Scene plain = loadText(kTwoFaces, log, kRedAndGreen);
+    EXPECT_EQ(plain.instances[0].mesh->triangles.size(), 4u);
+    const Scene smooth = loadText(kTwoFaces + kTags, log, kRedAndGreen);
+    ASSERT_EQ(smooth.instances.size(), 1u);
+    EXPECT_EQ(smooth.instances[0].mesh->triangles.size(), 2u * 2 * 8 * 8);
+    EXPECT_TRUE(log.warnings().empty());
+}
+
+// v of an OBJ goes up, that of our textures down.
+TEST(ObjCage, HasTheMaterialsAndTexturesOfItsPolygons) {
+    const Scene scene = loadText(kTwoFaces + kTags, kRedAndGreen);
+    const Mesh& mesh = *scene.instances[0].mesh;
+    ASSERT_EQ(mesh.uv[0].size(), mesh.positions.size());
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+        EXPECT_NEAR(mesh.uv[0][v].x, mesh.positions[v].x / 2, 1e-5f);
+        EXPECT_NEAR(mesh.uv[0][v].y, 1 - mesh.positions[v].y / 2, 1e-5f);
+    }
+    ASSERT_EQ(mesh.triangleMaterial.size(), mesh.triangles.size());
+    for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const UVec3& corners = mesh.triangles[t];
+        const float x = (mesh.positions[corners.x].x + mesh.positions[corners.y].x + mesh.positions[corners.z].x) / 3;
+        EXPECT_EQ(scene.materials[mesh.triangleMaterial[t]].baseColor, x < 1 ? Vec3(1, 0, 0) : Vec3(0, 1, 0));
+    }
+}
+
+TEST(ObjCage, TellsOfTagsThatItLeavesOut) {
+    MessageLog log;
+    loadText(kTwoFaces + "t creese 2/1/0 0 1 3\nt creese 2/1/0 1 2 3\n", log, kRedAndGreen);
+    ASSERT_EQ(log.warnings().size(), 1u);
+    EXPECT_NE(log.warnings()[0].find("creese"), std::string::npos);
+}
+
+TEST(ObjCage, WithoutALimitSurfaceItsPolygonsAreShown) {
+    MessageLog log;
+    const Scene scene = loadText("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nt corner 1/1/0 77 10\n", log);
+    EXPECT_EQ(scene.instances[0].mesh->triangles.size(), 1u);
+    ASSERT_EQ(log.warnings().size(), 1u);
+    EXPECT_NE(log.warnings()[0].find("as they are"), std::string::npos);
 }
 
 }  // namespace

@@ -121,14 +121,14 @@ TEST(Subdivision, ADeformingCageMovesItsSurfaceAlong) {
 
 TEST(Subdivision, EveryAssetCageTessellates) {
     if (!fs::exists(assets())) GTEST_SKIP() << "the test assets " << assets() << " are not here";
-    MessageLog log;
     for (const auto& entry : fs::recursive_directory_iterator(assets().parent_path())) {
         if (entry.path().extension() != ".obj" || entry.path().string().find("baseline") != std::string::npos) continue;
+        MessageLog log;
         const SubdivisionSurface surface = tessellate(loadCage(entry.path(), log), 3, entry.path().string());
         EXPECT_GT(surface.mesh.triangles.size(), 0u) << entry.path();
         checkMesh(surface.mesh, entry.path().string());
+        EXPECT_EQ(log.warnings().empty(), entry.path().string().find("hedit") == std::string::npos) << entry.path();
     }
-    EXPECT_TRUE(log.warnings().empty()) << log.warnings().front();
 }
 
 TEST(Subdivision, RefusesBrokenCages) {
