@@ -9,8 +9,9 @@
 namespace lumi {
 namespace {
 
-uint32_t keptOf(const SampleFrame& frame, size_t pixel) {
-    return subpixel::occupied(frame.reprojected.words[pixel]) & ~frame.changes[pixel].removed & ~frame.changes[pixel].added;
+uint32_t samplesOf(const SampleFrame& frame, size_t pixel) {
+    const PixelChange& change = frame.changes[pixel];
+    return subpixel::count((subpixel::occupied(frame.reprojected.words[pixel]) & ~change.removed) | change.added);
 }
 
 /// Where the samples of each pixel begin; returns how many there are.
@@ -25,7 +26,7 @@ uint32_t beginPixels(SampleFrame& frame, SampleSet& next) {
         uint32_t sum = 0;
         for (auto pixel = static_cast<size_t>(begin); pixel < static_cast<size_t>(end); ++pixel) {
             next.first[pixel] = sum;
-            sum += subpixel::count(keptOf(frame, pixel) | frame.changes[pixel].added);
+            sum += samplesOf(frame, pixel);
         }
         frame.chunkSums[static_cast<size_t>(begin) / kChunk] = sum;
     });
@@ -84,6 +85,13 @@ void SampleGatherer::prefetch(uint32_t pixel, uint32_t count) const {
         __builtin_prefetch(newPlaces_ + source);
         if (oldIndirect_) __builtin_prefetch(oldIndirect_ + source);
     }
+    for (uint32_t i = first_[pixel]; i < first_[pixel + count]; i += 4) {
+        __builtin_prefetch(locations_ + i, 1);
+        __builtin_prefetch(notes_ + i, 1);
+        __builtin_prefetch(inWorld_ + i, 1);
+        __builtin_prefetch(places_ + i, 1);
+        __builtin_prefetch(direct_ + i, 1);
+    }
 }
 
 void SampleGatherer::gather(uint32_t pixel, uint32_t count) const {
@@ -132,7 +140,7 @@ void SampleGatherer::keep(uint32_t source, size_t i) const {
     if (motions_) motions_[i] = oldPlaces_[source] - newPlaces_[source];
     const uint8_t flags = oldFlags_[source];
     verdicts_[i] = flags & SampleSet::kOccluded ? Verdict::Occluded : Verdict::Visible;
-    flags_[i] = flags & SampleSet::kSky;
+    flags_[i] = flags & ~SampleSet::kOccluded;
     hidden_[i] = 0;
 }
 

@@ -10,22 +10,23 @@
 namespace lumi {
 namespace {
 
-// A block is wide, as samples lie in rows and memory is read ahead, and at density 1 has as many rays as the tracer keeps
-// together.
-constexpr int kRun = 16, kColumns = 12 * kRun, kRows = 4;
+// A block is as wide as at density 1 as many rays as the tracer keeps together allow: samples lie in rows, and memory is read
+// ahead.
+constexpr int kRun = 16, kMostColumns = 16 * kRun, kRows = 4;
 static_assert(SampleBatch::kMost <= PathBatch::kMost);  // a judge is asked for all starts of a batch at once
 constexpr uint32_t kStream = 0x57ab1e00u;  ///< second word of the samples' keys
 
 /// One block at a time, by one thread.
 class BlockTracer {
 public:
-    BlockTracer(const SamplePass& pass, const SampleRays& rays, const SampleGatherer& gatherer, SampleBatch& batch, VerificationCounts& counts)
-        : pass_(pass), rays_(rays), gatherer_(gatherer), batch_(batch), counts_(counts) {}
+    /// `columns`: of a block.
+    BlockTracer(const SamplePass& pass, int columns, const SampleRays& rays, const SampleGatherer& gatherer, SampleBatch& batch, VerificationCounts& counts)
+        : pass_(pass), columns_(columns), rays_(rays), gatherer_(gatherer), batch_(batch), counts_(counts) {}
 
     /// Pixels from `left` and `top` on; false if stopped.
     bool run(int left, int top) {
         const Extent2 extent = pass_.next.extent;
-        const int right = std::min(left + kColumns, extent.width), bottom = std::min(top + kRows, extent.height);
+        const int right = std::min(left + columns_, extent.width), bottom = std::min(top + kRows, extent.height);
         for (int y = top; y < bottom; ++y)
             for (int x = left; x < right; x += kRun)
                 if (!addRun(static_cast<uint32_t>(y * extent.width + x), static_cast<uint32_t>(std::min(kRun, right - x)))) return false;
@@ -41,6 +42,7 @@ private:
     void addLight(size_t slot, uint32_t i, bool still);
 
     const SamplePass& pass_;
+    const int columns_;
     const SampleRays& rays_;
     const SampleGatherer& gatherer_;
     SampleBatch& batch_;
@@ -51,9 +53,9 @@ private:
 /// A run of pixels of a row, 16 at most, of which each has 16 samples at most.
 bool BlockTracer::addRun(uint32_t pixel, uint32_t count) {
     const uint32_t* first = pass_.next.first.data() + pixel;
-    uint32_t most = 0;
-    for (uint32_t p = 0; p < count; ++p) most = std::max(most, first[p + 1] - first[p]);
     const bool dense = pass_.verification.batches == VerificationSettings::Batches::Dense;
+    uint32_t most = 0;
+    for (uint32_t p = 0; p < count && !dense; ++p) most = std::max(most, first[p + 1] - first[p]);
     const size_t lanes = dense ? first[count] - first[0] : most * static_cast<uint32_t>(kRun);
     const size_t samples = batch_.sampleCount + first[count] - first[0];
     if ((std::max(batch_.startCount + lanes, samples) > SampleBatch::kMost || batch_.runCount == SampleBatch::kMost) && !trace()) return false;
@@ -177,15 +179,16 @@ bool traceSamples(const SamplePass& pass, VerificationCounts& counts) {
     const bool keepsDirect = pass.gathering.averageDirect || (pass.gathering.converge && pass.light.still);
     const SampleGatherer gatherer(pass.previous, pass.density, pass.random, keepsDirect, pass.frame, pass.next);
     const Extent2 extent = pass.next.extent;
-    const int columns = (extent.width + kColumns - 1) / kColumns, rows = (extent.height + kRows - 1) / kRows;
+    const int columns = (extent.width + kMostColumns - 1) / kMostColumns, rows = (extent.height + kRows - 1) / kRows;
+    const int width = ((extent.width + columns - 1) / columns + kRun - 1) / kRun * kRun;  // of a block
     std::atomic<bool> whole{true};
     std::atomic<uint64_t> flown{0}, lanes{0};
     parallelFor(static_cast<int64_t>(columns) * rows, [&](int64_t block) {
         std::unique_ptr<SampleBatch> batch = pass.spare.take();
         batch->clear();
         VerificationCounts here;
-        const int left = static_cast<int>(block % columns) * kColumns, top = static_cast<int>(block / columns) * kRows;
-        if (!BlockTracer(pass, rays, gatherer, *batch, here).run(left, top)) whole = false;
+        const int left = static_cast<int>(block % columns) * width, top = static_cast<int>(block / columns) * kRows;
+        if (!BlockTracer(pass, width, rays, gatherer, *batch, here).run(left, top)) whole = false;
         flown += here.rays, lanes += here.lanes;
         pass.spare.giveBack(std::move(batch));
     }, pass.context.stop);

@@ -48,7 +48,7 @@ static_assert(sizeof(SampleNote) == 12);
 /// number, a set with all 16 would have 1176. Light is the wide form of the paper's 8 bytes, which hold no HDR colour, no
 /// indirect light and no count (sec. 6.1 adds those without saying where they are kept).
 struct SampleSet {
-    static constexpr uint8_t kOccluded = 1, kSky = 2;  ///< flags
+    static constexpr uint8_t kOccluded = 1, kSky = 2, kOnLight = 4;  ///< flags; the last: on the body of a light
 
     Extent2 extent;
     std::vector<uint32_t> words;  ///< a pixel

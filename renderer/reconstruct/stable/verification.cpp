@@ -58,7 +58,9 @@ void SampleJudge::verify(const PathStart& start, Hit& hit) {
     if (frame_.verdicts[i] == Verdict::New) return locate(start.ray, hit, i);
     const SampleLocation& location = set_.locations[i];
     if (!frame_.newOnly) {
-        const bool found = findsSample(context_.tracer, location, start.ray.direction, hit, distance, epsilon_);
+        const bool onSame = hit.point.instance == location.instance && hit.point.primitive == location.primitive;
+        const bool found = (onSame && !(set_.flags[i] & (SampleSet::kOnLight | SampleSet::kSky))) ||
+                           findsSample(context_.tracer, location, start.ray.direction, hit, distance, epsilon_);
         frame_.verdicts[i] = found ? Verdict::Visible : hit.valid() ? Verdict::Occluded : Verdict::Missed;
         anyHidden_ |= !found;
         if (!found) return;
@@ -81,6 +83,7 @@ void SampleJudge::locate(const Ray& ray, const Hit& hit, uint32_t i) {
     }
     set_.locations[i] = SampleLocation::ofPoint(hit.point);
     set_.inWorld[i] = context_.tracer.position(hit.point);
+    set_.flags[i] = context_.tracer.isOnLight(hit.point) ? SampleSet::kOnLight : 0;
     if (!frame_.wantsMotions) return;
     const Vec3 position = ray.origin + ray.direction * hit.distance;
     frame_.motions[i] = Vec2(surfaceMotion(camera, previous, position, context_.tracer.previousPosition(hit.point)));
@@ -119,7 +122,7 @@ void SampleJudge::replace(uint32_t i, const Hit& blocker) {
     frame_.verdicts[i] = Verdict::Replaced;
     set_.locations[i] = SampleLocation::ofPoint(blocker.point);
     const Vec3 position = set_.inWorld[i] = context_.tracer.position(blocker.point);
-    set_.flags[i] = 0;
+    set_.flags[i] = context_.tracer.isOnLight(blocker.point) ? SampleSet::kOnLight : 0;
     SampleNote& note = set_.notes[i];
     note.age = note.directCount = note.indirectCount = 0;
     set_.direct[i] = Vec3(0);
