@@ -120,7 +120,7 @@ uint32_t pixelRandom(int64_t pixel, uint32_t frame) { return hashCombine(static_
 
 bool analyseSamples(const std::vector<uint32_t>& words, Extent2 extent, const DensitySettings& settings, uint32_t frame,
                     std::vector<PixelChange>& changes, float* density, std::stop_token stop) {
-    changes.assign(words.size(), {});
+    changes.resize(words.size());
     std::atomic<bool> any{false};
     const float acts = leastDifference(settings);
     parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
@@ -129,6 +129,7 @@ bool analyseSamples(const std::vector<uint32_t>& words, Extent2 extent, const De
         for (int64_t y = begin; y < end; ++y) {
             float* line = density ? density + y * extent.width : scratch.data();
             analysisKernels().densityRow(rowOf(words, extent, static_cast<int>(y), line));
+            std::fill_n(changes.begin() + y * extent.width, extent.width, PixelChange());
             for (int x = 0; x < extent.width; ++x) {
                 if (std::fabs(settings.density - line[x]) < acts) continue;
                 const int change = sampleChange(line[x], settings);

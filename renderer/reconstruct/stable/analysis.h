@@ -26,8 +26,8 @@ int sampleChange(float density, const DensitySettings& settings);
 
 /// What the analysis decides for one pixel.
 struct PixelChange {
-    uint32_t added = 0;    ///< sub-pixels that get a new sample; occluded ones there go
-    uint32_t removed = 0;  ///< sub-pixels whose visible sample goes
+    uint16_t added = 0;    ///< sub-pixels that get a new sample; occluded ones there go
+    uint16_t removed = 0;  ///< sub-pixels whose visible sample goes
 };
 
 /// Spends `change` (eq. 1) in a pixel: adds to the stratum with the fewest visible samples and removes from that with the

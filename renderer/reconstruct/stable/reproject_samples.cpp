@@ -83,6 +83,7 @@ uint64_t occupancyOf(const uint32_t* words, size_t count) {
 /// Algorithm 1 over what lands in a row, from `begin` to `end` of the order.
 void storeRow(size_t width, size_t row, uint32_t begin, uint32_t end, std::vector<uint32_t>& slots, ReprojectedSamples& out) {
     uint32_t *words = out.words.data() + row * width, *first = out.first.data() + row * width, *sources = out.sources.data();
+    std::fill_n(words, width, 0u);
     for (uint32_t k = begin; k < end; ++k) {
         const uint32_t source = out.order[k], target = out.targets[source], slot = target & ~ReprojectedSamples::kOccluded;
         const bool isOccluded = target & ReprojectedSamples::kOccluded;
@@ -137,8 +138,7 @@ bool reprojectSamples(const FrameContext& context, const SampleSet& previous, Re
     project(context, previous, out);
     if (context.stop.stop_requested()) return false;
     const std::vector<uint32_t> rowBegins = sortByRow(extent, out);
-    out.words.assign(static_cast<size_t>(extent.area()), 0);
-    out.first.resize(static_cast<size_t>(extent.area()));
+    out.words.resize(static_cast<size_t>(extent.area())), out.first.resize(static_cast<size_t>(extent.area()));
     out.sources.resize(out.order.size());
     constexpr int64_t kRows = 8;
     parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
