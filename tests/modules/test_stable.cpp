@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdio>
+#include <map>
 #include <set>
 
 #include "reconstruct/martin2002/martin2002.h"
@@ -149,6 +152,40 @@ TEST(Stable, AStillViewConvergesLikeTheMeanOfItsSamples) {
     const double ratio = squares(at16, at) / squares(at64, at);  // 4, less what `at` itself errs
     EXPECT_GT(ratio, 3);
     EXPECT_LT(ratio, 5.5);
+}
+
+// The same over 256 frames, with the slope printed. Ten seconds: by hand, with --gtest_also_run_disabled_tests.
+TEST(Stable, DISABLED_TheErrorOfAStillViewFallsLikeOneOverN) {
+    const Extent2 extent{48, 36};
+    const auto posed = balls().pose();
+    Rig rig(extent);
+    rig.path = plainPaths(3);
+    StableModule module;
+    module.resize(extent);
+    set(module, "tone-mapped", false);
+    constexpr FrameNumber kAll = 4096, kFirst = 8, kLast = 256;
+    std::map<FrameNumber, Image> means;  // by frames
+    std::map<FrameNumber, double> shares;  // mean of 1/n over the samples: some were there a few frames before others
+    for (FrameNumber frame = 1; frame <= kAll; ++frame) {
+        const Image at = rig.run(module, frame - 1, posed, view(), {});
+        if (!std::has_single_bit(static_cast<uint64_t>(frame))) continue;
+        means[frame] = at;
+        for (const SampleNote& note : module.samples().notes) shares[frame] += 1.0 / note.directCount;
+    }
+    // A mean of n paths is part of that of all N, so that their squared distance is the variance times 1/n - 1/N.
+    double sumX = 0, sumY = 0, sumXX = 0, sumXY = 0, count = 0;
+    for (FrameNumber n = kFirst; n <= kLast; n *= 2) {
+        double squares = 0;
+        for (size_t i = 0; i < means[n].size(); ++i) squares += sqr(static_cast<double>(means[n].data()[i]) - means[kAll].data()[i]);
+        const double samples = static_cast<double>(module.samples().size()), paths = samples / shares[n];
+        const double error = squares / static_cast<double>(means[n].size()) / (1 - shares[kAll] / shares[n]);
+        const double x = std::log(paths), y = std::log(error);
+        sumX += x, sumY += y, sumXX += x * x, sumXY += x * y, ++count;
+        std::printf("%4d frames, %.1f paths: mean squared error %.4g, times paths %.4g\n", static_cast<int>(n), paths, error, error * paths);
+    }
+    const double slope = (count * sumXY - sumX * sumY) / (count * sumXX - sumX * sumX);
+    std::printf("slope over %d to %d frames: %.3f\n", static_cast<int>(kFirst), static_cast<int>(kLast), slope);
+    EXPECT_NEAR(slope, -1, 0.05);
 }
 
 TEST(Stable, SamplesStayOnWhatDeforms) {
