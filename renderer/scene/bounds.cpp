@@ -18,4 +18,10 @@ Bounds3 transformedBounds(const Bounds3& bounds, const Mat4& m) {
     return result;
 }
 
+const Bounds3& MeshBounds::of(const Mesh& mesh) {
+    const auto [entry, isNew] = known_.try_emplace(&mesh);
+    if (isNew) entry->second = boundsOf(mesh.positions);
+    return entry->second;
+}
+
 }  // namespace lumi

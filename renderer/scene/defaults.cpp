@@ -5,8 +5,10 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <unordered_set>
 
 #include "base/parallel.h"
+#include "scene/bounds.h"
 #include "scene/deform.h"
 #include "scene/node_pose.h"
 
@@ -61,14 +63,38 @@ void addTriangle(const std::array<Vec3, kRays>& directions, const Vec3& a, const
     }
 }
 
+/// Whether a ray from `origin` may meet something in `box` nearer than what it has met: by the box's slabs, a little
+/// widened against rounding.
+bool mayMeet(const Bounds3& box, const Vec3& origin, const std::array<Vec3, kRays>& directions, const FirstHits& hits) {
+    const Vec3 margin = 1e-4f * (box.upper - box.lower) + 1e-5f * glm::max(glm::abs(box.lower), glm::abs(box.upper)) +
+                        1e-5f * glm::abs(origin);
+    const Vec3 lower = box.lower - margin - origin, upper = box.upper + margin - origin;
+    for (size_t i = 0; i < kRays; ++i) {
+        float nearest = 0, farthest = kInfinity;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float along = directions[i][axis];
+            if (along == 0) {
+                if (lower[axis] > 0 || upper[axis] < 0) farthest = -1;
+                continue;
+            }
+            const float a = lower[axis] / along, b = upper[axis] / along;
+            nearest = std::max(nearest, std::min(a, b)), farthest = std::min(farthest, std::max(a, b));
+        }
+        if (nearest <= farthest && nearest <= hits.distance[i]) return true;
+    }
+    return false;
+}
+
 /// Adds what the rays from `origin` meet of the instance at rest.
 void traceInstance(const Scene& scene, const NodePose& pose, const Instance& instance, const Vec3& origin,
-                   const std::array<Vec3, kRays>& directions, FirstHits& hits) {
+                   const std::array<Vec3, kRays>& directions, MeshBounds& meshBounds, FirstHits& hits) {
     const Mesh& mesh = *instance.mesh;
     const bool skinned = instance.skin >= 0 && !mesh.skin.empty();
     Mat4 worldFromObject(1);
     DeformedVertices deformed;
     if (instance.node >= 0 && !skinned) worldFromObject = pose.worldFromNode[static_cast<size_t>(instance.node)];
+    const auto placed = [&] { return transformedBounds(meshBounds.of(mesh), worldFromObject); };
+    if (!mesh.deforms() && !mayMeet(placed(), origin, directions, hits)) return;
     if (mesh.deforms()) {
         std::vector<Mat4> joints;
         if (skinned) joints = jointMatrices(scene.skins[static_cast<size_t>(instance.skin)], pose);
@@ -113,7 +139,9 @@ FirstHits lookAround(const Scene& scene, const Vec3& origin) {
     const std::array<Vec3, kRays> directions = spreadDirections();
     const NodePose pose = poseNodes(scene, {});
     FirstHits hits;
-    for (const Instance& instance : scene.instances) traceInstance(scene, pose, instance, origin, directions, hits);
+    MeshBounds meshBounds;
+    for (const Instance& instance : scene.instances)
+        traceInstance(scene, pose, instance, origin, directions, meshBounds, hits);
     return hits;
 }
 
@@ -170,11 +198,13 @@ Camera defaultCamera(const Scene& scene) {
 
 bool hasLight(const Scene& scene) {
     if (!scene.lights.empty() || scene.environment.visible()) return true;
+    std::unordered_set<const Mesh*> seen;
     for (const Instance& instance : scene.instances) {
         if (instance.material >= 0) {
             if (illuminates(scene.materials[static_cast<size_t>(instance.material)])) return true;
             continue;
         }
+        if (!seen.insert(instance.mesh.get()).second) continue;
         if (instance.mesh->triangleMaterial.empty()) {
             if (illuminates(scene.materials[instance.mesh->material])) return true;
             continue;

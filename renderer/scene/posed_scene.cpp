@@ -1,6 +1,7 @@
 #include "scene/posed_scene.h"
 
 #include <optional>
+#include <unordered_map>
 
 #include "base/parallel.h"
 #include "scene/bounds.h"
@@ -45,9 +46,20 @@ PosedInstance poseInstance(const Instance& instance, const PosedMoment& open, co
 
 std::shared_ptr<const std::vector<Bounds3>> computeMeshBounds(const Scene& scene) {
     auto bounds = std::make_shared<std::vector<Bounds3>>(scene.instances.size());
-    parallelFor(static_cast<int64_t>(bounds->size()), [&](int64_t i) {
-        (*bounds)[static_cast<size_t>(i)] = boundsOf(scene.instances[static_cast<size_t>(i)].mesh->positions);
+    std::vector<const Mesh*> meshes;
+    std::unordered_map<const Mesh*, size_t> placeOf;
+    std::vector<size_t> places;
+    places.reserve(scene.instances.size());
+    for (const Instance& instance : scene.instances) {
+        const auto [entry, isNew] = placeOf.try_emplace(instance.mesh.get(), meshes.size());
+        if (isNew) meshes.push_back(instance.mesh.get());
+        places.push_back(entry->second);
+    }
+    std::vector<Bounds3> ofMeshes(meshes.size());
+    parallelFor(static_cast<int64_t>(meshes.size()), [&](int64_t i) {
+        ofMeshes[static_cast<size_t>(i)] = boundsOf(meshes[static_cast<size_t>(i)]->positions);
     });
+    for (size_t i = 0; i < places.size(); ++i) (*bounds)[i] = ofMeshes[places[i]];
     return bounds;
 }
 

@@ -1,6 +1,7 @@
 // Embree geometries of meshes and light bodies, and the filters that make them transparent and single-sided.
 #include <algorithm>
 #include <cstring>
+#include <unordered_map>
 
 #include "math/hash.h"
 #include "trace/coverage.h"
@@ -128,6 +129,7 @@ void EmbreeScene::findSides(const PosedScene& posed) {
     hidesBackFaces_ = false;
     const std::vector<Material>& materials = posed.scene->materials;
     const bool anywhere = std::any_of(materials.begin(), materials.end(), [](const Material& m) { return isSingleSided(m); });
+    std::unordered_map<const Mesh*, bool> singleMeshes;  // with materials of their own for their triangles
     for (uint32_t i = 0; anywhere && i < plans_.size(); ++i) {
         const Plan& plan = plans_[i];
         if (plan.mode == Mode::None || plan.mode == Mode::Body || plan.mode == Mode::MovingBody) continue;
@@ -135,8 +137,14 @@ void EmbreeScene::findSides(const PosedScene& posed) {
         sides_[i].turned = plan.mode == Mode::Direct && glm::determinant(glm::mat3(plan.worldFromObject)) < 0;
         const std::vector<uint32_t>& ofTriangles = plan.mesh->triangleMaterial;
         const bool one = posed.scene->instances[i].material >= 0 || ofTriangles.empty();
-        const size_t triangles = one ? 1 : ofTriangles.size();
-        for (uint32_t t = 0; t < triangles && !sides_[i].single; ++t) sides_[i].single = isSingleSided(posed, i, t);
+        const auto [known, isNew] = one ? std::pair(singleMeshes.end(), false) : singleMeshes.try_emplace(plan.mesh, false);
+        if (one) {
+            sides_[i].single = isSingleSided(posed, i, 0);
+        } else {
+            bool& single = known->second;
+            for (uint32_t t = 0; isNew && t < ofTriangles.size() && !single; ++t) single = isSingleSided(posed, i, t);
+            sides_[i].single = single;
+        }
         hidesBackFaces_ |= sides_[i].single;
     }
 }

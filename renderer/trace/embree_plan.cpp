@@ -19,12 +19,13 @@ std::vector<bool> animatedNodes(const Scene& scene) {
     return animated;
 }
 
-bool hasAlpha(const Scene& scene, const Instance& instance) {
-    const auto masked = [&](uint32_t material) {
-        return material < scene.materials.size() && scene.materials[material].hasAlpha();
-    };
-    if (instance.material >= 0) return masked(static_cast<uint32_t>(instance.material));
-    const Mesh& mesh = *instance.mesh;
+bool hasAlpha(const Scene& scene, uint32_t material) {
+    return material < scene.materials.size() && scene.materials[material].hasAlpha();
+}
+
+/// Has any of the mesh's own materials alpha?
+bool hasAlpha(const Scene& scene, const Mesh& mesh) {
+    const auto masked = [&](uint32_t material) { return hasAlpha(scene, material); };
     if (mesh.triangleMaterial.empty()) return masked(mesh.material);
     return std::any_of(mesh.triangleMaterial.begin(), mesh.triangleMaterial.end(), masked);
 }
@@ -34,8 +35,13 @@ bool hasAlpha(const Scene& scene, const Instance& instance) {
 std::vector<EmbreeScene::Plan> EmbreeScene::makePlans(const PosedScene& posed) const {
     const Scene& scene = *posed.scene;
     const std::vector<bool> animated = animatedNodes(scene);
-    std::unordered_map<const Mesh*, int> uses;
-    for (const Instance& instance : scene.instances) ++uses[instance.mesh.get()];
+    struct Use {
+        int count = 0;
+        bool hasAlpha = false;
+    };
+    std::unordered_map<const Mesh*, Use> uses;
+    for (const Instance& instance : scene.instances) ++uses[instance.mesh.get()].count;
+    for (auto& [mesh, use] : uses) use.hasAlpha = mesh && hasAlpha(scene, *mesh);
 
     std::vector<Plan> plans(scene.instances.size());
     for (size_t i = 0; i < plans.size(); ++i) {
@@ -60,9 +66,10 @@ std::vector<EmbreeScene::Plan> EmbreeScene::makePlans(const PosedScene& posed) c
         } else if (!plan.mesh || plan.mesh->triangles.empty()) {
             plan.mode = Mode::None;
         } else {
-            plan.filtered = hasAlpha(scene, instance);
+            const Use& use = uses[plan.mesh];
+            plan.filtered = instance.material >= 0 ? hasAlpha(scene, static_cast<uint32_t>(instance.material)) : use.hasAlpha;
             plan.track = pose.track;
-            plan.mode = pose.deformed ? Mode::Deforming : moves || uses[plan.mesh] > 1 ? Mode::Instanced : Mode::Direct;
+            plan.mode = pose.deformed ? Mode::Deforming : moves || use.count > 1 ? Mode::Instanced : Mode::Direct;
         }
     }
     return plans;

@@ -128,7 +128,7 @@ void setTransforms(RTCGeometry instance, std::span<const Mat4> matrices) {
 
 }  // namespace
 
-void EmbreeScene::makeAttachment(const PosedScene& posed, uint32_t index) {
+void EmbreeScene::makeAttachment(const PosedScene& posed, uint32_t index, RTCScene meshScene) {
     const Plan& plan = plans_[index];
     Attachment& a = attachments_[index];
     if (plan.mode == Mode::None) return;
@@ -145,8 +145,7 @@ void EmbreeScene::makeAttachment(const PosedScene& posed, uint32_t index) {
     }
     RTCScene target = nullptr;
     if (plan.mode == Mode::Instanced) {
-        for (const MeshScene& m : meshScenes_)
-            if (m.mesh == plan.mesh) target = m.scene;
+        target = meshScene;
     } else {
         target = a.own = newScene();
         if (plan.mode == Mode::MovingBody) {
@@ -181,8 +180,11 @@ void EmbreeScene::rebuild(const PosedScene& posed, std::vector<Plan> plans) {
         const Vec3* positions = m.mesh->positions.data();
         attachSingle(m.scene, newTriangles({&positions, 1}, m.mesh->positions.size(), *m.mesh, nullptr, m.filtered));
     });
-    parallelFor(static_cast<int64_t>(plans_.size()),
-                [&](int64_t i) { makeAttachment(posed, static_cast<uint32_t>(i)); });
+    parallelFor(static_cast<int64_t>(plans_.size()), [&](int64_t i) {
+        const Plan& plan = plans_[static_cast<size_t>(i)];
+        const bool shared = plan.mode == Mode::Instanced;
+        makeAttachment(posed, static_cast<uint32_t>(i), shared ? meshScenes_[sceneOf.at(plan.mesh)].scene : nullptr);
+    });
     // Each build is parallel inside; builds inside our own loops wait for each other without end.
     for (const MeshScene& m : meshScenes_) rtcCommitScene(m.scene);
     for (uint32_t i = 0; i < attachments_.size(); ++i) {

@@ -79,7 +79,8 @@ private:
                              const Mat4* transform, bool filtered) const;
     RTCGeometry newDeforming(const Plan& plan, const DeformedVertices& open) const;
     RTCGeometry newBody(const Plan& plan) const;
-    void makeAttachment(const PosedScene& posed, uint32_t index);
+    /// `meshScene` is that of the instance's mesh if it is Instanced.
+    void makeAttachment(const PosedScene& posed, uint32_t index, RTCScene meshScene);
     void throwIfFailed(const char* step) const;
     static void filter(const RTCFilterFunctionNArguments* arguments);
     static void filterBackFaces(const RTCFilterFunctionNArguments* arguments);

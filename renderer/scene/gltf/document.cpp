@@ -80,6 +80,7 @@ Document::Document(const std::filesystem::path& path, MessageLog& log, const Loa
     progress(0, "Reading " + name_);
     const std::vector<uint8_t> file = readFile(path, kMaxFileBytes);
     digest_ = digest64(file);
+    byteCount_ = file.size();
     try {
         parse(file);
         decompressViews();
@@ -185,6 +186,7 @@ void Document::decompressViews() {
         const tinygltf::BufferView& view = model_.bufferViews[index];
         if (isMeshopt(view)) decompressed_[index] = decodeMeshopt(*this, view, "/bufferViews/" + std::to_string(index));
     });
+    for (const std::vector<uint8_t>& view : decompressed_) byteCount_ += view.size();
 }
 
 void Document::progress(float fraction, const std::string& step) const {
@@ -227,6 +229,7 @@ bool Document::readWholeFile(std::vector<unsigned char>& out, const std::string&
     checkMemory("the buffer " + file.filename().string(), std::filesystem::file_size(file, ignored));
     out = readFile(file, kMaxFileBytes);
     digest_ = digest64(out, digest_);
+    byteCount_ += out.size();
     // A file may be longer than its buffer; tinygltf insists on the exact length.
     if (out.size() > wanted) out.resize(static_cast<size_t>(wanted));
     return true;

@@ -29,6 +29,8 @@ public:
     const std::vector<ImageSource>& images() const { return images_; }
     const LoadOptions& options() const { return options_; }
     const std::filesystem::path& path() const { return path_; }
+    /// Bytes of the file, of its buffers' files and of what its compressed views decompress to.
+    uint64_t byteCount() const { return byteCount_; }
     /// Digest of the file and of its buffers' files, without images.
     uint64_t contentDigest() const { return digest_; }
 
@@ -74,6 +76,7 @@ private:
     std::string missingFile_;  ///< the last file that was asked for and is not there
     std::filesystem::path lastImageFile_;
     uint64_t digest_ = 0;
+    uint64_t byteCount_ = 0;
 };
 
 }  // namespace lumi::gltf

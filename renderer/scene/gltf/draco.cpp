@@ -78,6 +78,10 @@ public:
         if (!peekCounts(bytes, counts)) document_.fail(path_, "is no Draco mesh of version 2.2");
         if (counts.faces > promised.faces || counts.vertices > promised.vertices)
             document_.fail(path_, "holds more than its accessors say", text(promised), text(counts));
+        // Flat grids take a bit for each vertex; more than 64 times fewer are no mesh that someone made.
+        const uint64_t most = (uint64_t(1) << 16) + 512 * uint64_t(bytes.size());
+        if (std::max(counts.faces, counts.vertices) > most)
+            document_.fail(path_, "absurd counts for its size", "at most " + std::to_string(most), text(counts));
         checkMemory("a Draco mesh", uint64_t(counts.faces) * 200 + uint64_t(promised.vertices) * 200);
 
         draco::DecoderBuffer buffer;

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <map>
+#include <unordered_set>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "base/parallel.h"
 #include "scene/gltf/animations.h"
+#include "scene/gltf/counts.h"
 #include "scene/gltf/materials.h"
 #include "scene/gltf/meshes.h"
 #include "scene/gltf/nodes.h"
@@ -30,7 +32,9 @@ void makeNamesUnique(Things& things, const Name& nameOf) {
 void dropUnusedDefault(Scene& scene) {
     const uint32_t last = static_cast<uint32_t>(scene.materials.size() - 1);
     if (last == 0) return;
+    std::unordered_set<const Mesh*> seen;
     for (const Instance& instance : scene.instances) {
+        if (!seen.insert(instance.mesh.get()).second) continue;
         const std::vector<uint32_t>& table = instance.mesh->triangleMaterial;
         if (table.empty() ? instance.mesh->material == last : std::find(table.begin(), table.end(), last) != table.end())
             return;
@@ -63,6 +67,7 @@ Scene loadGltf(const std::filesystem::path& path, MessageLog& log, const LoadOpt
     scene.title = path.stem().string();
     scene.path = path.string();
     gltf::NodeTree tree(document, scene);
+    gltf::checkCounts(document, tree);
 
     document.progress(0.1f, "Decoding textures, reading meshes");
     gltf::TextureLibrary library(document);

@@ -14,6 +14,12 @@ namespace {
 
 std::string nodePath(size_t index) { return "/nodes/" + std::to_string(index); }
 
+/// For exactly `more` things, or by half of what is there if that is more, so that many small additions move few.
+template <class Things>
+void makeRoom(Things& things, size_t more) {
+    if (things.capacity() - things.size() < more) things.reserve(things.size() + std::max(more, things.size() / 2));
+}
+
 }  // namespace
 
 NodeTree::NodeTree(const Document& document, Scene& scene)
@@ -159,8 +165,13 @@ void NodeTree::addGpuInstances(size_t index, const Instance& prototype, const ti
     read("TRANSLATION", translations);
     read("ROTATION", rotations);
     read("SCALE", scales);
-    checkMemory("instances", count * (sizeof(Node) + sizeof(Instance)));
+    const size_t weights = scene_.nodes[static_cast<size_t>(prototype.node)].morphWeights.size();
+    checkMemory("instances", (scene_.nodes.size() + count) * sizeof(Node) + count * weights * sizeof(float) +
+                                 (scene_.instances.size() + count) * sizeof(Instance));
+    makeRoom(scene_.nodes, count);
+    makeRoom(scene_.instances, count);
     for (size_t i = 0; i < count; ++i) {
+        if (i % 4096 == 0) document_.pollStop();
         Node node;
         node.name = prototype.name + "-" + std::to_string(i);
         node.parent = prototype.node;

@@ -144,7 +144,7 @@ TEST(GltfAccessor, RangesAreChecked) {
             f.json["accessors"][0].erase("bufferView");
             f.json["accessors"][0]["count"] = 4000000000u;
         },
-        {"/accessors/0/count", "absurd"});
+        {"/attributes/POSITION", "absurd count", "4000000000"});
 }
 
 TEST(GltfAccessor, SparseRangesAreChecked) {

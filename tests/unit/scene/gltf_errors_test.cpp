@@ -175,6 +175,77 @@ TEST(GltfErrors, MissingAndDamagedTexturesAreWarnings) {
     }
 }
 
+/// Index of a new accessor that stands for `count` zeros, which cost the file nothing.
+int zeros(GltfBuilder& file, size_t count, const char* type = "VEC3") {
+    file.json["accessors"].push_back({{"componentType", 5126}, {"count", count}, {"type", type}});
+    return static_cast<int>(file.json["accessors"].size()) - 1;
+}
+
+TEST(GltfCounts, VerticesWithoutDataAreFew) {
+    GltfBuilder one;
+    one.triangle();
+    one.primitive()["attributes"]["POSITION"] = zeros(one, 1000000);
+    one.expectRefused({"/meshes/0/primitives/0/attributes/POSITION", "absurd count", "at most", "1000000"});
+
+    // As many as one may, and again and again.
+    GltfBuilder many;
+    many.triangle();
+    const nlohmann::json primitive = many.primitive();
+    for (int i = 0; i < 4; ++i) {
+        nlohmann::json other = primitive;
+        other["attributes"]["POSITION"] = zeros(many, 30000);
+        many.json["meshes"][0]["primitives"].push_back(other);
+    }
+    many.expectRefused({"/meshes/0/primitives/3/attributes/POSITION", "60000 before and 30000 here"});
+}
+
+TEST(GltfCounts, KeysWithoutDataAreFew) {
+    GltfBuilder file;
+    file.triangle();
+    const int times = zeros(file, 2000000, "SCALAR"), values = zeros(file, 2000000);
+    file.json["animations"] = {{{"samplers", {{{"input", times}, {"output", values}}}},
+                                {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}}}}};
+    file.expectRefused({"/animations/0/samplers/0/input", "absurd count", "2000000"});
+}
+
+TEST(GltfCounts, AFaceOfManyExpressionsIsSane) {
+    GltfBuilder file;
+    constexpr size_t kVertices = 20000, kTargets = 60;
+    const int positions = file.floats(std::vector<float>(3 * kVertices, 1), "VEC3", 3);
+    file.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}}}}}};
+    for (size_t t = 0; t < kTargets; ++t) file.primitive()["targets"].push_back({{"POSITION", zeros(file, kVertices)}});
+    EXPECT_EQ(file.load().instances.at(0).mesh->morphTargets.size(), kTargets);
+}
+
+GltfBuilder& instanced(GltfBuilder& file, int translations, int nodes = 1) {
+    file.triangle();
+    nlohmann::json node = {{"mesh", 0}};
+    node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = translations;
+    for (int n = 0; n < nodes; ++n) file.json["nodes"][static_cast<size_t>(n)] = node;
+    for (int n = 1; n < nodes; ++n) file.json["scenes"][0]["nodes"].push_back(n);
+    return file;
+}
+
+TEST(GltfCounts, InstancesAreFewForASmallFile) {
+    GltfBuilder bare;
+    instanced(bare, zeros(bare, 1000000))
+        .expectRefused({"/nodes/0/extensions/EXT_mesh_gpu_instancing", "absurd count of instances", "1000000"});
+    GltfBuilder shared;
+    const int translations = shared.floats(std::vector<float>(3 * 2000, 0), "VEC3", 3);
+    instanced(shared, translations, 100).expectRefused({"EXT_mesh_gpu_instancing", "absurd count of instances"});
+    GltfBuilder sane;
+    const int few = sane.floats(std::vector<float>(3 * 2000, 0), "VEC3", 3);
+    EXPECT_EQ(instanced(sane, few, 20).load().instances.size(), 40000u);
+}
+
+TEST(GltfCounts, InstancesTakeNoMoreRoomThanTheyNeed) {
+    GltfBuilder file;
+    const Scene scene = instanced(file, zeros(file, 40000)).load();
+    ASSERT_EQ(scene.instances.size(), 40000u);
+    EXPECT_EQ(scene.instances.capacity(), 40000u);
+    EXPECT_LE(scene.nodes.capacity(), 40001u);
+}
+
 TEST(GltfErrors, StoppedLoadsAreInterrupted) {
     GltfBuilder file;
     file.triangle();

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "scene/bounds.h"
 #include "scene/mesh_edit.h"
 #include "support/expect_error.h"
 
@@ -23,6 +24,15 @@ Mesh square() {
 
 void expectNear(const Vec3& a, const Vec3& b, float tolerance = 1e-6f) {
     EXPECT_LT(glm::length(a - b), tolerance) << a.x << ' ' << a.y << ' ' << a.z;
+}
+
+TEST(Mesh, BoundsAreWorkedOutOnceForManyInstances) {
+    Mesh mesh = square();
+    MeshBounds bounds;
+    EXPECT_EQ(bounds.of(mesh).upper, Vec3(1, 1, 0));
+    mesh.positions[2] = {5, 5, 5};
+    EXPECT_EQ(bounds.of(mesh).upper, Vec3(1, 1, 0)) << "not looked at again";
+    EXPECT_EQ(MeshBounds().of(mesh).upper, Vec3(5));
 }
 
 TEST(Mesh, NormalsAreWeightedByAngle) {
