@@ -153,7 +153,7 @@ void printChecks(const std::vector<FrameCheck>& checks) {
     for (const FrameCheck& frame : checks) {
         std::puts(fmt::format("{:<12}{}", fmt::format("check {}", frame.frame), frame.what).c_str());
         for (const ContractFinding& finding : frame.findings)
-            std::puts(fmt::format("  {:<8}{}", finding.holds() ? "good" : "BROKEN", finding.text()).c_str());
+            std::puts(fmt::format("  {:<8}{}", !finding.holds() ? "BROKEN" : finding.checked > 0 ? "good" : "-", finding.text()).c_str());
     }
 }
 

@@ -38,6 +38,7 @@ Document& Session::Impl::requireDocument() {
 void Session::Impl::noteChange(Redo redo) {
     ++revision;
     pending = std::max(pending.value_or(redo), redo);
+    if (redo >= Redo::Samples) signalCheck = nullptr;  // what was checked is not what is drawn any more
     frameFailed = false;
     if (redo >= Redo::Filter) abandonFrame();
     wake.notify_all();

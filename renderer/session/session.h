@@ -148,7 +148,7 @@ public:
     /// Checks the signals of the document as it is, when nothing else is to be done.
     void checkSignals();
     bool checkingSignals() const;
-    /// Of the present scene; null before it was checked.
+    /// Of the present scene as it is; null before it was checked, and after a change to what is traced.
     std::shared_ptr<const SignalCheck> signalCheck() const;
 
     /// The log from which `render --replay` makes the present frame again.

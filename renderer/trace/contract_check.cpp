@@ -4,9 +4,12 @@
 
 #include <array>
 #include <bit>
+#include <bitset>
 #include <cmath>
+#include <optional>
 
 #include "math/statistics.h"
+#include "trace/blue_noise.h"
 
 namespace lumi {
 namespace {
@@ -32,6 +35,12 @@ public:
         finding_.value = shown;
     }
     void check(Pixel p, double error) { check(p, error, error); }
+    /// One test of `pixels` together.
+    void checkTogether(int64_t pixels, double error) {
+        check({0, 0}, error);
+        finding_.checked = pixels;
+        finding_.violations *= pixels;
+    }
     ContractFinding take() { return std::move(finding_); }
 
 private:
@@ -88,22 +97,28 @@ ContractFinding finiteValues(const CheckedFrame& frame) {
 
 ContractFinding unitNormals(const CheckedFrame& frame) {
     Rule rule("normals are unit vectors", 1e-3);
-    for (const Signal signal : {Signal::Normal, Signal::GeometricNormal, Signal::ObjectNormal})
-        frame.eachSurface([&](Pixel p) {
+    frame.eachSurface([&](Pixel p) {
+        double worst = 1;
+        for (const Signal signal : {Signal::Normal, Signal::GeometricNormal, Signal::ObjectNormal}) {
             const double length = glm::length(colourAt(frame.signals[signal], p));
-            rule.check(p, std::abs(length - 1), length);
-        });
+            if (!(std::abs(length - 1) <= std::abs(worst - 1))) worst = length;
+        }
+        rule.check(p, std::abs(worst - 1), worst);
+    });
     return rule.take();
 }
 
 ContractFinding range01(const CheckedFrame& frame, Signal signal) {
     Rule rule(fmt::format("{} lies in [0,1]", signalInfo(signal).name), 1e-5);
+    const auto outside = [](double v) { return std::max({-v, v - 1, 0.0}); };
     frame.eachPixel([&](Pixel p) {
         const Image& image = frame.signals[signal];
+        double worst = 0;
         for (int c = 0; c < image.channels(); ++c) {
             const double v = image.at(c, p.x, p.y);
-            rule.check(p, std::max(-v, v - 1), v);
+            if (!(outside(v) <= outside(worst))) worst = v;
         }
+        rule.check(p, std::isnan(worst) ? worst : outside(worst), worst);
     });
     return rule.take();
 }
@@ -150,33 +165,50 @@ ContractFinding motionVectors(const CheckedFrame& frame) {
     return rule.take();
 }
 
-ContractFinding jitterDistribution(const CheckedFrame& frame) {
-    constexpr int kCells = 8;
+/// Offset of the frame's first sample from the pixel's upper left corner, in pixels; through a pinhole.
+Vec2 offsetAt(const CheckedFrame& frame, Pixel p) {
+    const Vec3 at = frame.camera(p).project(colourAt(frame.signals[Signal::Position], p));
+    return {at.x - static_cast<float>(p.x), at.y - static_cast<float>(p.y)};
+}
+
+/// Needs a pinhole and enough surface; else there is nothing to check.
+ContractFinding uniformOffsets(const CheckedFrame& frame) {
+    constexpr int kCells = 8, kEnough = 5 * kCells * kCells, kSide = BlueNoiseTile::kSide;
+    Rule rule("sub-pixel offsets are uniform (chi-square test; -log10 of the p-value)", 6);
     std::array<double, kCells * kCells> observed{};
-    double count = 0;
-    Vec2 first(-1);
-    const auto offsetAt = [&](Pixel p) {
-        const Vec3 at = frame.camera(p).project(colourAt(frame.signals[Signal::Position], p));
-        return Vec2(at.x - static_cast<float>(p.x), at.y - static_cast<float>(p.y));
-    };
+    int64_t count = 0;
+    std::bitset<kSide * kSide> seen;
+    const bool repeats = frame.sampling.path.sampler == SamplerKind::BlueNoise;
     frame.eachSurface([&](Pixel p) {
-        const Vec2 offset = offsetAt(p);
+        // Blue noise repeats from tile to tile: the same offsets again would make a small deviation a sure one.
+        const size_t place = static_cast<size_t>(p.y % kSide * kSide + p.x % kSide);
+        if (repeats && seen[place]) return;
+        seen[place] = true;
+        const Vec2 offset = offsetAt(frame, p);
         const auto cell = [&](float o) { return std::clamp(static_cast<int>(o * kCells), 0, kCells - 1); };
         observed[static_cast<size_t>(cell(offset.y) * kCells + cell(offset.x))] += 1;
-        if (count++ == 0) first = offset;
+        ++count;
     });
-    const bool pinhole = frame.sampling.camera.aperture == 0;
-    if (frame.sampling.jitter != Jitter::PerPixel || !pinhole || count < 64 * 5) {
-        // Barycentrics of a sliver seen edge-on hold a place on it to a few hundredths of a pixel.
-        Rule rule("all pixels have the frame's one sub-pixel offset", 0.1, "px");
-        if (frame.sampling.jitter != Jitter::PerPixel && pinhole)
-            frame.eachSurface([&](Pixel p) { rule.check(p, glm::distance(offsetAt(p), first)); });
-        return rule.take();
-    }
-    const std::vector<double> expected(observed.size(), count / static_cast<double>(observed.size()));
-    Rule rule("sub-pixel offsets are uniform (1 - p-value of a chi-square test)", 1 - 1e-6);
-    rule.check({0, 0}, 1 - chiSquareTest(observed, expected));
+    if (frame.sampling.camera.aperture > 0 || count < kEnough) return rule.take();
+    const std::vector<double> expected(observed.size(), static_cast<double>(count) / static_cast<double>(observed.size()));
+    rule.checkTogether(count, -std::log10(std::max(chiSquareTest(observed, expected), 1e-300)));
     return rule.take();
+}
+
+ContractFinding oneOffset(const CheckedFrame& frame) {
+    // Barycentrics of a sliver seen edge-on hold a place on it to a few hundredths of a pixel.
+    Rule rule("all pixels have the frame's one sub-pixel offset", 0.1, "px");
+    if (frame.sampling.camera.aperture > 0) return rule.take();
+    std::optional<Vec2> first;
+    frame.eachSurface([&](Pixel p) {
+        if (!first) first = offsetAt(frame, p);
+        rule.check(p, glm::distance(offsetAt(frame, p), *first));
+    });
+    return rule.take();
+}
+
+ContractFinding jitterDistribution(const CheckedFrame& frame) {
+    return frame.sampling.jitter == Jitter::PerPixel ? uniformOffsets(frame) : oneOffset(frame);
 }
 
 ContractFinding knownIds(const CheckedFrame& frame) {
@@ -206,6 +238,7 @@ ContractFinding emptySky(const CheckedFrame& frame) {
 }  // namespace
 
 std::string ContractFinding::text() const {
+    if (checked == 0) return rule + ": nothing to check";
     if (holds()) return fmt::format("{}: holds in {} pixel{}", rule, checked, checked == 1 ? "" : "s");
     return fmt::format("{}: broken in {} of {} pixels; worst at ({}, {}): {:.4g}{}{}, allowed {:.4g}", rule, violations,
                        checked, worst.x, worst.y, value, unit.empty() ? "" : " ", unit, limit);

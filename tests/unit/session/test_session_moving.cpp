@@ -109,6 +109,12 @@ TEST_F(SessionMoving, ChecksTheSignalsOfAScene) {
     EXPECT_TRUE(check->holds()) << check->failure << check->brokenRules();
     EXPECT_EQ(check->frames.size(), 2u);
     waitFor("frames to go on", [&, frame = shownFrame()] { return shownFrame() > frame; });
+    session.setText("view.0.exposure", "1");
+    EXPECT_EQ(session.signalCheck(), check) << "what is traced is what was checked";
+    session.setText("camera.fov-y-deg", "30");
+    EXPECT_EQ(session.signalCheck(), nullptr) << "something else is traced now";
+    session.checkSignals();
+    waitFor("the check of what was changed", [&] { return session.signalCheck() != nullptr; });
     session.open(kCornell);
     waitFor("the scene to be another", [&] { return session.signalCheck() != check; });
     session.checkSignals();

@@ -92,6 +92,50 @@ TEST_F(ContractCheck, AnUndamagedFrameHolds) {
     }
 }
 
+TEST_F(ContractCheck, CountsPixels) {
+    const FrameSampling s = sampling(Jitter::PerPixel);
+    const Frame f = frame(s);
+    int64_t surfaces = 0;
+    for (int y = 0; y < kExtent.height; ++y)
+        for (int x = 0; x < kExtent.width; ++x) surfaces += f.signals.ids(Signal::ObjectId).at(0, x, y) != 0;
+    for (const ContractFinding& finding : checkSignals(f.signals, s, tracer_)) {
+        const bool all = finding.rule.find("lies in") != std::string::npos || finding.rule.find("finite") != std::string::npos;
+        const bool some = finding.rule.find("unit") != std::string::npos || finding.rule.find("uniform") != std::string::npos;
+        if (all || some) {
+            EXPECT_EQ(finding.checked, all ? kExtent.area() : surfaces) << finding.rule;
+        }
+    }
+}
+
+// Its offsets repeat from tile to tile.
+TEST_F(ContractCheck, BlueNoiseIsUniform) {
+    for (const uint32_t seed : {0u, 1u, 2u}) {
+        FrameSampling s = sampling(Jitter::PerPixel);
+        s.extent = {320, 180}, s.seed = seed;
+        s.camera = s.previousCamera = poseCamera(lookFrom(Vec3(0.5f, 1.5f, 4), Vec3(0, 0.9f, 0), 50), s.extent);
+        s.path.sampler = SamplerKind::BlueNoise;
+        Signals signals;
+        ASSERT_TRUE(tracer_.sample(s, signals));
+        for (const ContractFinding& finding : checkSignals(signals, s, tracer_)) EXPECT_TRUE(finding.holds()) << finding.text();
+    }
+}
+
+TEST_F(ContractCheck, ALensLeavesNoOffsetsToCheck) {
+    for (const Jitter jitter : {Jitter::PerPixel, Jitter::PerFrame}) {
+        FrameSampling s = sampling(jitter);
+        s.camera.aperture = 0.05f, s.camera.focus = 4;
+        const char* rule = jitter == Jitter::PerPixel ? "uniform" : "one sub-pixel offset";
+        bool found = false;
+        for (const ContractFinding& finding : checkSignals(frame(s).signals, s, tracer_)) {
+            if (finding.rule.find(rule) == std::string::npos) continue;
+            found = true;
+            EXPECT_EQ(finding.checked, 0);
+            EXPECT_NE(finding.text().find("nothing to check"), std::string::npos) << finding.text();
+        }
+        EXPECT_TRUE(found) << rule;
+    }
+}
+
 TEST_F(ContractCheck, EachDamagedColourBreaksItsRule) {
     const Damage damages[] = {
         {"an infinity", "is finite", [](Frame& f) { value(f, Signal::Indirect, 1, f.surface) = kInfinity; }},
