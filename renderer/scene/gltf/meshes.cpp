@@ -48,6 +48,14 @@ int materialIndex(const tinygltf::Primitive& primitive, int variant) {
     return primitive.material;
 }
 
+/// The set of texture coordinates whose directions a material's surfaces need: of its normal map, else its clearcoat's,
+/// else of its anisotropy. -1: none.
+int tangentSet(const Material& material) {
+    if (material.normalTexture) return material.normalTexture.uvSet;
+    if (material.clearcoatNormalTexture) return material.clearcoatNormalTexture.uvSet;
+    return material.anisotropy > 0 ? material.anisotropyTexture.uvSet : -1;
+}
+
 class MeshReader {
 public:
     MeshReader(const Document& document, const MaterialSet& set, int variant, size_t index)
@@ -60,9 +68,7 @@ public:
         for (size_t p = 0; p < source_.primitives.size(); ++p) addPrimitive(p);
         std::erase_if(parts_, [](const Mesh& part) { return part.triangles.empty(); });
         if (parts_.empty()) return nullptr;
-        const bool anyNormals =
-            std::any_of(parts_.begin(), parts_.end(), [](const Mesh& part) { return !part.normals.empty(); });
-        for (Mesh& part : parts_) finish(part, anyNormals);
+        finish();
         auto mesh = std::make_shared<Mesh>(mergeMeshes(std::move(parts_)));
         mesh->name = source_.name;
         checkMesh(*mesh, document_.path().filename().string() + ": " + path_);
@@ -83,16 +89,20 @@ private:
         const UvSets& uvSets = uvSets_[static_cast<size_t>(material)];
 
         const std::unique_ptr<const DracoMesh> draco = decodeDraco(document_, primitive, path);
+        const bool hasTangents = primitive.attributes.contains("TANGENT");
+        const int tangents = hasTangents ? -1 : tangentSet(materials_[static_cast<size_t>(material)]);
         const auto sharesVertices = [&](const Source& other) {
             return other.primitive && other.primitive->attributes == primitive.attributes &&
-                   other.primitive->targets == primitive.targets && other.uvSets == uvSets;
+                   other.primitive->targets == primitive.targets && other.uvSets == uvSets &&
+                   (other.tangents == tangents || other.tangents < 0 || tangents < 0);
         };
         const auto known = std::find_if(sources_.begin(), sources_.end(), sharesVertices);
         const auto part = draco ? sources_.size() : static_cast<size_t>(known - sources_.begin());
         if (part == sources_.size()) {
-            sources_.push_back({draco ? nullptr : &primitive, uvSets});
+            sources_.push_back({draco ? nullptr : &primitive, uvSets, tangents});
             parts_.push_back(readVertices(document_, primitive, draco.get(), uvSets, path));
         }
+        sources_[part].tangents = std::max(sources_[part].tangents, tangents);
         if (parts_[part].positions.empty()) return;
         const std::vector<UVec3> triangles =
             readTriangles(document_, primitive, draco.get(), parts_[part].positions.size(), path);
@@ -101,25 +111,36 @@ private:
         mesh.triangleMaterial.resize(mesh.triangles.size(), static_cast<uint32_t>(material));
     }
 
-    void finish(Mesh& part, bool anyNormals) const {
-        compactVertices(part);
-        const Material* mapped = nullptr;
-        for (const uint32_t m : part.triangleMaterial)
-            if (materials_[m].normalTexture) {
-                mapped = &materials_[m];
-                break;
-            }
-        const bool needsTangents = mapped && part.tangents.empty();
-        // glTF: without normals, faces are flat.
-        if (part.normals.empty() && (anyNormals || needsTangents)) makeFlat(part);
-        if (needsTangents && !part.uv[mapped->normalTexture.uvSet].empty())
-            computeTangents(part, mapped->normalTexture.uvSet);
+    /// Normals and tangents: what one part has, all have, since they become one mesh.
+    void finish() {
+        bool anyNormals = false, anyTangents = false;
+        for (Mesh& part : parts_) {
+            compactVertices(part);
+            const int set = tangentSetOf(part);
+            anyTangents |= !part.tangents.empty() || (set >= 0 && !part.uv[set].empty());
+            anyNormals |= !part.normals.empty();
+        }
+        for (Mesh& part : parts_) {
+            // glTF: without normals, faces are flat.
+            if (part.normals.empty() && (anyNormals || anyTangents)) makeFlat(part);
+            if (anyTangents && part.tangents.empty()) computeTangents(part, std::max(tangentSetOf(part), 0));
+        }
+    }
+
+    /// Of the part's materials, which agree.
+    int tangentSetOf(const Mesh& part) const {
+        int set = -1;
+        for (size_t i = 0; i < part.triangleMaterial.size() && set < 0; ++i)
+            if (i == 0 || part.triangleMaterial[i] != part.triangleMaterial[i - 1])
+                set = tangentSet(materials_[part.triangleMaterial[i]]);
+        return set;
     }
 
     /// Whose vertices a part holds; without a primitive they are for its own triangles alone.
     struct Source {
         const tinygltf::Primitive* primitive;
         UvSets uvSets;
+        int tangents;  ///< the set that generated tangents follow; -1: none needed
     };
 
     const Document& document_;

@@ -72,5 +72,83 @@ TEST(GltfUvSets, PrimitivesOverTheSameVerticesMayUseDifferentSets) {
     for (uint32_t t = 0; t < 2; ++t) EXPECT_EQ(mesh.uv[0][mesh.triangles[t].x], Vec2(t == 0 ? 2.0f : 3.0f));
 }
 
+/// A square in the plane z = 0 in two triangles, with u along +y in set 0 and along -x in set 1.
+nlohmann::json square(GltfBuilder& file, float z) {
+    nlohmann::json primitive;
+    primitive["attributes"]["POSITION"] = file.floats({0, 0, z, 1, 0, z, 1, 1, z, 0, 1, z}, "VEC3", 3);
+    primitive["attributes"]["NORMAL"] = file.floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
+    primitive["attributes"]["TEXCOORD_0"] = file.floats({0, 0, 0, 1, 1, 1, 1, 0}, "VEC2", 2);
+    primitive["attributes"]["TEXCOORD_1"] = file.floats({1, 0, 0, 0, 0, 1, 1, 1}, "VEC2", 2);
+    primitive["indices"] = file.indices({0, 1, 2, 0, 2, 3});
+    return primitive;
+}
+
+/// One mesh of squares, each with a material of its own.
+Mesh squares(const std::vector<nlohmann::json>& materials, bool sameVertices = false) {
+    GltfBuilder file;
+    file.json["images"] = {{{"uri", kPixel}}};
+    file.json["textures"] = {{{"source", 0}}};
+    file.json["materials"] = materials;
+    file.json["meshes"] = {{{"primitives", nlohmann::json::array()}}};
+    for (size_t i = 0; i < materials.size(); ++i) {
+        nlohmann::json next =
+            sameVertices && i > 0 ? file.json["meshes"][0]["primitives"][0] : square(file, static_cast<float>(i));
+        next["material"] = i;
+        file.json["meshes"][0]["primitives"].push_back(next);
+    }
+    return *file.load().instances.at(0).mesh;
+}
+
+void expectTangent(const Mesh& mesh, uint32_t material, const Vec3& along) {
+    ASSERT_FALSE(mesh.tangents.empty());
+    int corners = 0;
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
+        for (int c = 0; c < 3 && mesh.materialOf(t) == material; ++c, ++corners)
+            EXPECT_LT(glm::distance(Vec3(mesh.tangents[mesh.triangles[t][c]]), along), 1e-5f) << "material " << material;
+    EXPECT_EQ(corners, 6);
+}
+
+const nlohmann::json kNormalMap = {{"normalTexture", {{"index", 0}}}};
+const nlohmann::json kOtherNormalMap = {{"normalTexture", {{"index", 0}, {"texCoord", 1}}}};
+nlohmann::json extended(const char* name, const nlohmann::json& values) { return {{"extensions", {{name, values}}}}; }
+
+TEST(GltfTangents, AnisotropyAndClearcoatFollowTheirCoordinates) {
+    const nlohmann::json anisotropic = extended("KHR_materials_anisotropy", {{"anisotropyStrength", 1}});
+    const nlohmann::json coated =
+        extended("KHR_materials_clearcoat",
+                 {{"clearcoatFactor", 1}, {"clearcoatNormalTexture", {{"index", 0}, {"texCoord", 1}}}});
+    // Alone, and beside a part with a normal map, which must not turn them.
+    expectTangent(squares({anisotropic}), 0, {0, 1, 0});
+    expectTangent(squares({coated}), 0, {-1, 0, 0});
+    const Mesh both = squares({anisotropic, kNormalMap, coated, {{"name", "plain"}}});
+    expectTangent(both, 0, {0, 1, 0});
+    expectTangent(both, 1, {0, 1, 0});
+    expectTangent(both, 2, {-1, 0, 0});
+    expectTangent(both, 3, {0, 1, 0});
+}
+
+TEST(GltfTangents, NormalMapsOfDifferentSetsOverTheSameVertices) {
+    const Mesh mesh = squares({kNormalMap, kOtherNormalMap}, true);
+    expectTangent(mesh, 0, {0, 1, 0});
+    expectTangent(mesh, 1, {-1, 0, 0});
+    EXPECT_EQ(mesh.positions.size(), 8u);
+    // What needs no tangents of its own shares with either.
+    EXPECT_EQ(squares({kNormalMap, {{"name", "plain"}}}, true).positions.size(), 4u);
+    EXPECT_EQ(squares({{{"name", "plain"}}, kOtherNormalMap}, true).positions.size(), 4u);
+}
+
+TEST(GltfTangents, PartsWithoutNormalsAreFlatBesideOthers) {
+    GltfBuilder file;
+    file.json["images"] = {{{"uri", kPixel}}};
+    file.json["textures"] = {{{"source", 0}}};
+    file.json["materials"] = {kNormalMap, {{"name", "plain"}}};
+    nlohmann::json mapped = square(file, 0), plain = square(file, 1);
+    mapped["material"] = 0, plain["material"] = 1;
+    mapped["attributes"].erase("NORMAL"), plain["attributes"].erase("NORMAL");
+    file.json["meshes"] = {{{"primitives", {mapped, plain}}}};
+    const Scene scene = file.load();
+    EXPECT_EQ(scene.instances.at(0).mesh->normals, std::vector<Vec3>(12, Vec3(0, 0, 1)));
+}
+
 }  // namespace
 }  // namespace lumi
