@@ -1,5 +1,7 @@
 #include "scene/deform.h"
 
+#include <cmath>
+
 #include "base/parallel.h"
 
 namespace lumi {
@@ -9,7 +11,7 @@ constexpr int64_t kGrain = 4096;  ///< vertices a task
 
 Vec3 unitOr(const Vec3& v, const Vec3& otherwise) {
     const float length = glm::length(v);
-    return length > 0 ? v / length : otherwise;
+    return length > 0 && std::isfinite(length) ? v / length : otherwise;
 }
 
 void addScaled(std::vector<Vec3>& to, const std::vector<Vec3>& delta, float weight, size_t begin, size_t end) {

@@ -9,6 +9,7 @@
 #include "scene/gltf/load_gltf.h"
 #include "scene/light_body.h"
 #include "scene/obj/load_obj.h"
+#include "scene/posed_scene.h"
 #include "scene/scene_file.h"
 
 namespace lumi {
@@ -68,6 +69,7 @@ std::shared_ptr<const Scene> loadScene(const fs::path& path, MessageLog& log, co
     }
     if (scene->path.empty()) scene->path = path.string();
     addLightBodies(*scene);
+    poseScene(scene, {});  // what cannot be posed is not taken over
     addDefaults(*scene, log, !ours);
     if (options.progress) options.progress(1, "done");
     return scene;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/reach.h"
 
 namespace lumi {
 namespace {
@@ -78,9 +79,11 @@ void checkMesh(const Mesh& mesh, const std::string& where) {
                            .expected = "an index below " + std::to_string(vertices),
                            .found = std::to_string(largest)});
     }
-    for (size_t i = 0; i < vertices; ++i)
-        if (!isFinite(mesh.positions[i]))
-            throwBadInput({.what = "the position of vertex " + std::to_string(i) + " is not finite", .where = where});
+    if (const size_t i = firstOutOfReach(mesh.positions); i < vertices)
+        throwBadInput({.what = "the position of vertex " + std::to_string(i) + " is out of range",
+                       .where = where,
+                       .expected = reachText(),
+                       .found = outOfReachText(mesh.positions[i])});
 }
 
 void computeNormals(Mesh& mesh) {

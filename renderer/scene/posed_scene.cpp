@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "scene/bounds.h"
 #include "scene/posed_shutter.h"
+#include "scene/reach.h"
 
 namespace lumi {
 namespace {
@@ -165,6 +166,7 @@ std::shared_ptr<const PosedScene> poseScene(std::shared_ptr<const Scene> scene, 
     poseLights(open, previous, before, *posed);
     if (animated && times.close != times.open) openShutter(times, cut, before, *posed);
     else if (before) keepPreviousTracks(*before, *posed);
+    requireReach(*posed, bounds);
     return posed;
 }
 

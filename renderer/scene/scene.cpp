@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "scene/bounds.h"
@@ -19,11 +20,11 @@ void addTexture(const Texture& texture, std::set<const TextureImage*>& images) {
 void placeAtNode(Camera& camera, const Mat4& worldFromNode) {
     const float distance = glm::length(camera.target - camera.eye);
     const Vec3 back(worldFromNode[2]), up(worldFromNode[1]);
-    const float length = glm::length(back);
-    const Vec3 forward = length > 0 ? back * (-1 / length) : Vec3(0, 0, -1);
+    const float length = glm::length(back), height = glm::length(up);
+    const Vec3 forward = length > 0 && std::isfinite(length) ? back * (-1 / length) : Vec3(0, 0, -1);
     camera.eye = Vec3(worldFromNode[3]);
     camera.target = camera.eye + forward * (distance > 0 ? distance : 1.0f);
-    camera.up = glm::length(up) > 0 ? glm::normalize(up) : Vec3(0, 1, 0);
+    camera.up = height > 0 && std::isfinite(height) ? glm::normalize(up) : Vec3(0, 1, 0);
 }
 
 /// Keys as animation channels, so that every curve in a scene is evaluated by one function.

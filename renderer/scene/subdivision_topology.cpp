@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "scene/reach.h"
 
 namespace lumi {
 namespace {
@@ -35,8 +36,8 @@ void checkCage(const SubdivisionCage& cage, const std::string& where) {
     checkIndices(cage.holes, cage.faceSizes.size(), "hole", where);
     for (const auto& crease : cage.creases) checkIndices({crease.a, crease.b}, cage.positions.size(), "crease", where);
     for (const auto& corner : cage.corners) checkIndices({corner.vertex}, cage.positions.size(), "corner", where);
-    for (const Vec3& p : cage.positions)
-        if (!isFinite(p)) throwBadInput({"a vertex is not finite", where, "", ""});
+    if (const size_t i = firstOutOfReach(cage.positions); i < cage.positions.size())
+        throwBadInput({fmt::format("the position of vertex {} is out of range", i), where, reachText(), outOfReachText(cage.positions[i])});
 }
 
 Sdc::Options schemeOptions(const SubdivisionCage& cage) {

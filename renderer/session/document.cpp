@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "params/json.h"
 #include "reconstruct/catalog.h"
+#include "scene/reach.h"
 #include "session/document_fields.h"
 
 namespace lumi {
@@ -103,7 +104,9 @@ void RenderSettings::describe(ParameterVisitor& v) {
 Document::Document(std::shared_ptr<const Scene> scene) : loaded_(scene), edited_(std::move(scene)) {
     names_ = std::make_shared<Names>(Names{namesOf(loaded_->materials, "material"), namesOf(loaded_->lights, "light"),
                                            cameraNames(*loaded_)});
-    sceneRadius_ = loaded_->restBounds().radius();
+    // At rest things may lie where no frame has them.
+    const float radius = loaded_->restBounds().radius();
+    sceneRadius_ = isInReach(radius) ? radius : kReach;
     const RenderDefaults& defaults = loaded_->render;
     render_.width = defaults.size.width;
     render_.height = defaults.size.height;

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "reconstruct/catalog.h"
+#include "scene/reach.h"
 #include "session/frame_pose.h"
 #include "session/view_buffers.h"
 
@@ -57,6 +58,7 @@ std::optional<FrameOutput> FrameEngine::advance(const FrameRequest& request, std
     const RenderSettings& render = request.document.render();
     next.camera = poseCamera(request.document.camera(), {render.width, render.height});
     next.cameraTrack = request.document.cameraTrack();
+    requireReach(next.camera, request.document.scene()->path);
 
     FrameOutput frame;
     frame.changes.cut = !previous || previous->frame + 1 != request.frame ||

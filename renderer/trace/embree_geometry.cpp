@@ -45,7 +45,7 @@ RTCGeometry EmbreeScene::newDeforming(const Plan& plan, const DeformedVertices& 
     if (plan.track)
         for (const auto& shape : plan.track->deformed) steps.push_back(shape->positions.data());
     if (steps.empty()) steps.push_back(open.positions.data());
-    return newTriangles(steps, open.positions.size(), *plan.mesh, nullptr, plan.filtered);
+    return newTriangles(steps, open.positions.size(), *plan.mesh, plan.inWorld ? &plan.worldFromObject : nullptr, plan.filtered);
 }
 
 RTCGeometry EmbreeScene::newBody(const Plan& plan) const {
@@ -133,8 +133,8 @@ void EmbreeScene::findSides(const PosedScene& posed) {
     for (uint32_t i = 0; anywhere && i < plans_.size(); ++i) {
         const Plan& plan = plans_[i];
         if (plan.mode == Mode::None || plan.mode == Mode::Body || plan.mode == Mode::MovingBody) continue;
-        // An instance is traced in its own space, where glTF's front faces turn counter-clockwise, mirrored or not.
-        sides_[i].turned = plan.mode == Mode::Direct && glm::determinant(glm::mat3(plan.worldFromObject)) < 0;
+        // What is not in world space is traced in its own, where glTF's front faces turn counter-clockwise, mirrored or not.
+        sides_[i].turned = plan.inWorld && glm::determinant(glm::mat3(plan.worldFromObject)) < 0;
         const std::vector<uint32_t>& ofTriangles = plan.mesh->triangleMaterial;
         const bool one = posed.scene->instances[i].material >= 0 || ofTriangles.empty();
         const auto [known, isNew] = one ? std::pair(singleMeshes.end(), false) : singleMeshes.try_emplace(plan.mesh, false);

@@ -13,8 +13,9 @@ namespace lumi {
 struct EmbreeScene::Plan {
     Mode mode = Mode::None;
     bool filtered = false;
+    bool inWorld = false;     ///< its triangles are Embree's in world space
     const Mesh* mesh = nullptr;
-    Mat4 worldFromObject{1};  ///< Direct and Instanced
+    Mat4 worldFromObject{1};  ///< of meshes
     LightShape shape;         ///< bodies, radiance left out
     std::shared_ptr<const ShutterTrack> track;  ///< meshes that move while the shutter is open
     std::vector<LightShape> shutterShapes;      ///< bodies that do, at equally spaced moments
@@ -22,7 +23,7 @@ struct EmbreeScene::Plan {
     /// Of the instance at the moments of the open shutter, mostly one.
     std::span<const Mat4> transforms() const {
         static const Mat4 identity(1);
-        if (mode == Mode::MovingBody) return {&identity, 1};
+        if (mode == Mode::MovingBody || inWorld) return {&identity, 1};
         if (track) return track->worldFromObject;
         return {&worldFromObject, 1};
     }

@@ -1,5 +1,6 @@
 // How each instance of a posed scene is attached to Embree.
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 #include "trace/embree_parts.h"
@@ -28,6 +29,33 @@ bool hasAlpha(const Scene& scene, const Mesh& mesh) {
     const auto masked = [&](uint32_t material) { return hasAlpha(scene, material); };
     if (mesh.triangleMaterial.empty()) return masked(mesh.material);
     return std::any_of(mesh.triangleMaterial.begin(), mesh.triangleMaterial.end(), masked);
+}
+
+/// Can rays be carried into the space of `m`? Not if it flattens, nearly so, or makes things so small that a ray's numbers
+/// there pass what Embree allows. In double: a float's determinant underflows at a scale of 1e-13.
+bool carriesRays(const Mat4& m) {
+    constexpr double kMost = 1e7;  // times a camera's distance, 1e10 m: below 1.8e18
+    const glm::dmat3 inverse = glm::inverse(glm::dmat3(glm::dmat4(m)));
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            if (!(std::abs(inverse[column][row]) <= kMost)) return false;
+    return true;
+}
+
+/// Does `m` leave nothing to be seen of meshes in reach, a line or a point?
+bool isSpeck(const Mat4& m) {
+    const glm::dmat3 d{glm::dmat4(m)};
+    const glm::dvec3 cofactors[] = {glm::cross(d[0], d[1]), glm::cross(d[1], d[2]), glm::cross(d[2], d[0])};
+    return std::all_of(std::begin(cofactors), std::end(cofactors), [](const glm::dvec3& c) { return glm::length(c) < 1e-38; });
+}
+
+/// carriesRays() at all moments of the open shutter: between two of them a mirroring flattens too.
+bool carriesRays(const PosedInstance& pose) {
+    if (!carriesRays(pose.worldFromObject)) return false;
+    if (!pose.track) return true;
+    const bool mirroring = isMirroring(pose.worldFromObject);
+    return std::all_of(pose.track->worldFromObject.begin(), pose.track->worldFromObject.end(),
+                       [&](const Mat4& m) { return carriesRays(m) && isMirroring(m) == mirroring; });
 }
 
 }  // namespace
@@ -68,8 +96,12 @@ std::vector<EmbreeScene::Plan> EmbreeScene::makePlans(const PosedScene& posed) c
         } else {
             const Use& use = uses[plan.mesh];
             plan.filtered = instance.material >= 0 ? hasAlpha(scene, static_cast<uint32_t>(instance.material)) : use.hasAlpha;
-            plan.track = pose.track;
-            plan.mode = pose.deformed ? Mode::Deforming : moves || use.count > 1 ? Mode::Instanced : Mode::Direct;
+            const bool instanced = pose.deformed || moves || use.count > 1;
+            // What is flat at present stands in the world as it is when the shutter opens.
+            plan.inWorld = !instanced || !carriesRays(pose);
+            if (!plan.inWorld) plan.track = pose.track;
+            plan.mode = pose.deformed ? Mode::Deforming : plan.inWorld ? Mode::Direct : Mode::Instanced;
+            if (instanced && plan.inWorld && isSpeck(pose.worldFromObject)) plan.mode = Mode::None;
         }
     }
     return plans;

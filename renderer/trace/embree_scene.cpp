@@ -214,10 +214,10 @@ bool EmbreeScene::update(const PosedScene& posed, std::vector<Plan> plans) {
         const bool otherTrack = plan.track != plans_[i].track;
         const bool reshaped = plan.mode == Mode::MovingBody && (!(plan.shape == plans_[i].shape) ||
                                                                 plan.shutterShapes != plans_[i].shutterShapes);
-        const bool deformed =
-            plan.mode == Mode::Deforming && (posed.instances[i].deformed != a.deformed || otherTrack);
-        const bool carried = (plan.mode == Mode::Instanced || plan.mode == Mode::Deforming) &&
-                             (plan.worldFromObject != plans_[i].worldFromObject || otherTrack);
+        const bool otherPlace = plan.worldFromObject != plans_[i].worldFromObject || plan.inWorld != plans_[i].inWorld;
+        const bool deformed = plan.mode == Mode::Deforming && (posed.instances[i].deformed != a.deformed || otherTrack ||
+                                                               (otherPlace && (plan.inWorld || plans_[i].inWorld)));
+        const bool carried = (plan.mode == Mode::Instanced || plan.mode == Mode::Deforming) && (otherPlace || otherTrack);
         if (!reshaped && !deformed && !carried) return;
         changed[i] = 1;
         if (reshaped || deformed) {

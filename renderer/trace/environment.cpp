@@ -16,6 +16,9 @@ constexpr int kMostColumns = 1024, kLeastColumns = 64;
 /// How much the second moment of a light sample may grow by a coarser grid.
 constexpr double kMostGrowth = 1.2;
 
+/// `x` within [0, 1]; 0 for NaN: a direction that is no number looks up a texel too.
+float unit(float x) { return x > 0 ? (x < 1 ? x : 1.0f) : 0.0f; }
+
 /// Index i of the interval of an ascending table (count + 1 entries from 0 to 1) that holds u, never an empty one.
 /// guide[k] is the interval that holds k / count.
 int findInterval(const float* cdf, const uint16_t* guide, int count, float u) {
@@ -211,7 +214,7 @@ Vec3 EnvironmentLight::radiance(const Vec3& direction) const {
 }
 
 Vec3 EnvironmentLight::imageRadiance(Vec2 uv) const {
-    const float fx = uv.x * static_cast<float>(width_) + 0.5f, fy = uv.y * static_cast<float>(height_) + 0.5f;
+    const float fx = unit(uv.x) * static_cast<float>(width_) + 0.5f, fy = unit(uv.y) * static_cast<float>(height_) + 0.5f;
     // Texel centres are at halves: the pair around the point is (cell - 1, cell).
     const int cellX = static_cast<int>(fx), cellY = static_cast<int>(fy);
     const float tx = fx - static_cast<float>(cellX), ty = fy - static_cast<float>(cellY);
@@ -263,8 +266,8 @@ float EnvironmentLight::pdf(const Vec3& direction) const {
     const Vec2 uv = latLongFromDirection(d);
     const float sine = std::sqrt(std::max(0.0f, 1 - d.y * d.y));
     if (!(sine > 0)) return 0;
-    const int column = std::clamp(static_cast<int>(uv.x * static_cast<float>(columns_)), 0, columns_ - 1);
-    const int row = std::clamp(static_cast<int>(uv.y * static_cast<float>(rows_)), 0, rows_ - 1);
+    const int column = std::min(static_cast<int>(unit(uv.x) * static_cast<float>(columns_)), columns_ - 1);
+    const int row = std::min(static_cast<int>(unit(uv.y) * static_cast<float>(rows_)), rows_ - 1);
     return density(column, row) / (2 * kPi * kPi * sine);
 }
 

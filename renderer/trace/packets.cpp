@@ -43,6 +43,13 @@ EmbreeScene::Context makeContext(const EmbreeScene& scene, std::span<const Batch
 
 unsigned flagsOf(const BatchRay& ray) { return ray.fromCamera ? EmbreeScene::kFromCamera : 0; }
 
+/// Is it one that Embree can follow? It asserts that no number of a ray is NaN, that places and directions do not pass
+/// 1.8e18, and that no ray begins behind its origin. Others meet nothing.
+bool isTraceable(const BatchRay& r) {
+    const Vec3 sum = glm::abs(r.origin) + glm::abs(r.direction);
+    return (sum.x + sum.y + sum.z < 1e18f) & (r.tmin >= 0) & (r.tmax >= -kInfinity);
+}
+
 /// Rays in their order.
 struct AsTheyCome {
     size_t operator[](size_t i) const { return i; }
@@ -52,9 +59,9 @@ struct AsTheyCome {
 template <int N, class PacketRay, class Order>
 void fill(PacketRay& packet, int* valid, std::span<const BatchRay> rays, Order order, size_t first, size_t count) {
     for (size_t i = 0; i < N; ++i) {
-        valid[i] = i < count ? -1 : 0;
         // Lanes that are off hold a copy, so that no lane has undefined values.
         const BatchRay& r = rays[order[first + std::min(i, count - 1)]];
+        valid[i] = i < count && isTraceable(r) ? -1 : 0;
         packet.org_x[i] = r.origin.x, packet.org_y[i] = r.origin.y, packet.org_z[i] = r.origin.z;
         packet.dir_x[i] = r.direction.x, packet.dir_y[i] = r.direction.y, packet.dir_z[i] = r.direction.z;
         packet.tnear[i] = r.tmin, packet.tfar[i] = r.tmax;
@@ -63,8 +70,15 @@ void fill(PacketRay& packet, int* valid, std::span<const BatchRay> rays, Order o
     }
 }
 
+/// In place of one that cannot be traced: one that ends before it begins.
 RTCRay singleRay(const BatchRay& r) {
     RTCRay ray;
+    if (!isTraceable(r)) {
+        ray.org_x = ray.org_y = ray.org_z = ray.dir_x = ray.dir_y = ray.time = 0;
+        ray.dir_z = ray.tnear = 1, ray.tfar = 0;
+        ray.mask = ray.id = ray.flags = 0;
+        return ray;
+    }
     ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z;
     ray.dir_x = r.direction.x, ray.dir_y = r.direction.y, ray.dir_z = r.direction.z;
     ray.tnear = r.tmin, ray.tfar = r.tmax;

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/spares.h"
 #include "math/hash.h"
+#include "scene/reach.h"
 #include "trace/camera_starts.h"
 #include "trace/integrator.h"
 #include "trace/signals_observer.h"
@@ -130,6 +131,8 @@ bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_t
                     std::span<PathObserver* const> extra) {
     assert(sampling.jitter != Jitter::Auto && sampling.samplesPerPixel > 0 &&
            sampling.camera.extent == sampling.extent);
+    requireReach(sampling.camera, scene().scene->path);
+    for (const CameraPose& camera : sampling.cameraTrack) requireReach(camera, scene().scene->path);
     signals.reset(sampling.extent, withDependencies(sampling.wanted), sampling.samplesPerPixel);
     if (sampling.extent.empty()) return true;
     SignalsObserver frame(impl_->scene, sampling, signals);

@@ -135,6 +135,13 @@ class Info(CommandTest):
                              "render.height=36", "--set", "camera." + camera).json
             self.assertTrue(all(check["holds"] for check in info["checks"]), (camera, info["checks"]))
 
+    def test_what_lies_out_of_reach_is_refused(self):
+        faces = "\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+        (self.folder / "far.obj").write_text("v 0 0 1e19" + faces)
+        self.refused(3, ["far.obj:1", "out of range", "-1e+09 to 1e+09", "1e19"], "info", "far.obj")
+        (self.folder / "near.obj").write_text("v 0 0 9e8" + faces)
+        self.good("info", "near.obj", "--check", "--set", "render.width=32", "--set", "render.height=18")
+
     def test_warnings_are_told(self):
         (self.folder / "dark.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         info = self.good("info", "dark.obj", "--json").json

@@ -42,7 +42,7 @@ for target in "${targets[@]}"; do
     mkdir -p "$own"
     good "$target" | while IFS= read -r file; do cp -n "$file" "$own/$(basename "$file")"; done
     if [ -d "tests/fuzz/seeds/$target" ]; then cp -n "tests/fuzz/seeds/$target"/* "$own"; fi
-    # Embree and Mesa are not in it; what OpenSubdiv and tinygltf allocate counts.
+    # Mesa is not in it; what Embree, OpenSubdiv and tinygltf allocate counts.
     if build/fuzz/bin/fuzz_"$target" "$own" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=3000 -max_len=65536 \
         -artifact_prefix="$corpus/$target-" >"$corpus/$target.log" 2>&1; then
         result="no finding"

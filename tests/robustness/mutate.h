@@ -37,15 +37,17 @@ private:
     }
     void overwriteWord(std::string& bytes, size_t at) {
         static constexpr uint32_t kWords[] = {0, 1, 0x7fffffffu, 0x80000000u, 0xffffffffu, 0x7fc00000u, 0x7f800000u,
-                                              0xffffff00u, 65536, 0x01000000u};
-        const uint32_t word = kWords[pick(10)];
+                                              0xffffff00u, 65536, 0x01000000u,
+                                              // As floats: 1e18, -3e19, 1e25, 3e38, 1e9, 1e-30.
+                                              0x5d5e0b6bu, 0xdfd02ab4u, 0x69045951u, 0x7f61b1e6u, 0x4e6e6b28u, 0x0da24260u};
+        const uint32_t word = kWords[pick(16)];
         for (size_t i = 0; i < 4 && at + i < bytes.size(); ++i) bytes[at + i] = static_cast<char>(word >> (8 * i));
     }
     /// Exchanges one number or string of a text for a hostile one.
     void damageText(std::string& bytes) {
         static const std::vector<std::string> kNumbers = {
             "-1", "0", "1e999", "-1e308", "99999999999999999999", "4294967295", "2147483648", "1e-320", "nan", "0.5",
-            "true", "null", "[]", "{}", "\"\""};
+            "true", "null", "[]", "{}", "\"\"", "1e9", "-2e9", "1e18", "3e19", "-1e25", "1e30", "3e38", "1e-30"};
         static const std::vector<std::string> kStrings = {
             "../../../../etc/passwd", "/dev/zero", "", "\\ud800", "\xff\xfe", "%00", "data:,", "a/../..",
             "data:application/octet-stream;base64,AAAA", "SCALAR", "VEC4", "KHR_draco_mesh_compression"};

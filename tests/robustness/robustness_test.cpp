@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 
 #include "base/error.h"
@@ -14,8 +14,8 @@
 #include "image/hdr.h"
 #include "image/png.h"
 #include "robustness/mutate.h"
+#include "robustness/trace_few.h"
 #include "scene/load.h"
-#include "scene/posed_scene.h"
 #include "unit/scene/compressed_gltf.h"
 
 namespace lumi {
@@ -41,15 +41,15 @@ protected:
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    /// Loads `bytes` as a file of that name with everything a session does to a scene: load and pose.
+    /// Loads `bytes` as a file of that name with everything a session does to a scene: load, pose and trace.
     void tryScene(const std::string& name, const std::string& bytes, uint64_t seed) {
         const fs::path path = folder_ / name;
         writeFileAtomically(path, std::string_view(bytes));
-        const auto start = std::chrono::steady_clock::now();
+        const std::clock_t start = std::clock();
         try {
             MessageLog log;
             const auto scene = loadScene(path, log);
-            poseScene(scene, {0.3f, 0.3f, 0.2f});
+            traceAFew(scene);
             ++accepted_;
         } catch (const Error& error) {
             ++refused_;
@@ -61,8 +61,8 @@ protected:
         } catch (const std::exception& other) {
             ADD_FAILURE() << name << " seed " << seed << " let out: " << other.what();
         }
-        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-        EXPECT_LT(took.count(), 10) << name << " seed " << seed;
+        // The process's own time, whatever else runs.
+        EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 10) << name << " seed " << seed;
     }
     /// $LUMISCOPE_SEEDS names a folder that gets the good files, as a corpus for the fuzz targets.
     void mutateScene(const std::string& name, const std::string& good, bool isText, uint64_t base) {

@@ -5,6 +5,7 @@
 
 #include "math/transform.h"
 #include "scene/gltf/accessor.h"
+#include "scene/reach.h"
 
 namespace lumi::gltf {
 namespace {
@@ -145,9 +146,9 @@ Mesh readVertices(const Document& document, const tinygltf::Primitive& primitive
     for (const std::map<std::string, int>& target : primitive.targets)
         mesh.morphTargets.push_back({targets.read<Vec3>(target, "POSITION"), targets.read<Vec3>(target, "NORMAL"),
                                      targets.read<Vec3>(target, "TANGENT")});
-    for (size_t i = 0; i < mesh.positions.size(); ++i)
-        if (!isFinite(mesh.positions[i]))
-            document.fail(where + "/POSITION", "the position of vertex " + std::to_string(i) + " is not finite");
+    if (const size_t i = firstOutOfReach(mesh.positions); i < mesh.positions.size())
+        document.fail(where + "/POSITION", "the position of vertex " + std::to_string(i) + " is out of range", reachText(),
+                      outOfReachText(mesh.positions[i]));
     makeHarmless(mesh);
     return mesh;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/reach.h"
 
 namespace lumi {
 namespace {
@@ -27,6 +28,19 @@ bool isFiniteNumber(std::string_view word) {
     // What is too small for a double is 0, and good.
     const bool fits = code == std::errc() || (code == std::errc::result_out_of_range && word.find_first_of("eE") != word.npos && word.find("-", 1) != word.npos);
     return fits && end == word.data() + word.size() && std::isfinite(static_cast<float>(value));
+}
+
+/// The first three numbers of a line that are all finite: are they a place in reach? The first that is not, or nothing.
+std::string_view farCoordinate(std::string_view line) {
+    for (int c = 0; c < 3; ++c) {
+        std::string_view word = nextWord(line);
+        const std::string_view shown = word.substr(0, 40);
+        if (word.starts_with('+')) word.remove_prefix(1);
+        float value = 0;
+        std::from_chars(word.data(), word.data() + word.size(), value);
+        if (!isInReach(value)) return shown;
+    }
+    return {};
 }
 
 /// The first word that is no finite number, or what is missing among `least`; empty if all is well.
@@ -55,6 +69,11 @@ void checkObjNumbers(std::string_view text, const std::string& where, MessageLog
                                .where = where + ":" + std::to_string(lineNumber),
                                .expected = "three finite numbers",
                                .found = std::string(fault)});
+            if (const std::string_view far = farCoordinate(line); !far.empty())
+                throwBadInput({.what = "the position of a vertex is out of range",
+                               .where = where + ":" + std::to_string(lineNumber),
+                               .expected = reachText(),
+                               .found = std::string(far)});
         } else if (kind == "vt" || kind == "vn") {
             if (faultOf(line, kind == "vt" ? 1 : 3).empty()) continue;
             if (faults++ == 0) first = lineNumber;

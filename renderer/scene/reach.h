@@ -1,0 +1,38 @@
+#pragma once
+#include <cmath>
+#include <span>
+#include <string>
+
+#include "scene/camera.h"
+
+namespace lumi {
+
+class PosedScene;
+
+/// How far from the origin anything may be along each axis, metres; matrices hold no larger numbers either. Distances
+/// between such things, their squares and the squares of areas all fit a float, and rays stay far below the 1.8e18 that
+/// Embree allows.
+constexpr float kReach = 1e9f;
+
+/// Not for NaN, nor for infinities.
+inline bool isInReach(float x) { return std::abs(x) <= kReach; }
+inline bool isInReach(const Vec3& p) { return isInReach(p.x) && isInReach(p.y) && isInReach(p.z); }
+bool isInReach(const Mat4& m);
+
+/// The first point that is not in reach; points.size() if all are.
+size_t firstOutOfReach(std::span<const Vec3> points);
+
+/// For messages: what is expected of coordinates, and what one that is not in reach is.
+std::string reachText();
+std::string outOfReachText(const Vec3& p);
+
+/// Throws Error(BadInput) that names the scene's file and the first instance or light some part of which is not in reach
+/// at any moment of the frame: animation, skins, morphing and scales can carry there what lay in reach when it was loaded.
+/// `bounds` holds the world-space box of each instance at shutter open.
+void requireReach(const PosedScene& posed, std::span<const Bounds3> bounds);
+
+/// The same for a camera, which may be ten times as far: its place, and the part of the world that an orthographic one sees.
+/// `where` is the scene's file.
+void requireReach(const CameraPose& camera, const std::string& where);
+
+}  // namespace lumi
