@@ -84,8 +84,9 @@ fs::path findScene(const std::string& name) {
     const bool isBareName = !path.has_extension() && !path.has_parent_path() && !name.empty();
     if (!isBareName) {
         std::error_code ignored;
-        const bool folder = fs::is_directory(path, ignored);
-        throwBadInput({folder ? "is a directory" : "no such file", name, folder ? "a scene file" : "", ""});
+        const fs::file_status status = fs::status(path, ignored);
+        if (!fs::exists(status)) throwBadInput({"no such file", name, "", ""});
+        throwBadInput({fs::is_directory(status) ? "is a directory" : "is not a regular file", name, "a scene file", ""});
     }
     for (const fs::path& folder : sceneFolders())
         if (const fs::path candidate = folder / (name + ".json"); isSceneFile(candidate)) return candidate;

@@ -66,8 +66,14 @@ std::vector<StudyListing> listStudies() {
 fs::path findStudy(const std::string& name) {
     if (isFile(name)) return name;
     const fs::path path(name);
-    if (path.has_extension() || path.has_parent_path() || name.empty())
-        throwBadInput({"no such file", name, "a study file", ""});
+    if (path.has_extension() || path.has_parent_path() || name.empty()) {
+        std::error_code ignored;
+        const fs::file_status status = fs::status(path, ignored);
+        throwBadInput({!fs::exists(status)        ? "no such file"
+                       : fs::is_directory(status) ? "is a directory"
+                                                  : "is not a regular file",
+                       name, "a study file", ""});
+    }
     std::vector<std::string> names;
     std::string all;
     for (const StudyListing& study : listStudies()) {

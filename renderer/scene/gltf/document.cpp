@@ -130,7 +130,7 @@ void Document::parse(std::span<const uint8_t> file) {
                                           static_cast<unsigned int>(text.size()), kFolder);
     }();
     if (!good && !missingFile_.empty() && error.find("File not found") != error.npos)
-        throwBadInput({.what = "the buffer file \"" + missingFile_ + "\" does not exist", .where = name_});
+        throwBadInput({.what = "the buffer file " + missingFile_, .where = name_});
     if (!good) throwBadInput({.what = "damaged glTF: " + firstLine(error), .where = name_});
 
     images_.resize(model_.images.size());
@@ -209,10 +209,14 @@ std::filesystem::path Document::resolve(const std::string& uri) const {
 bool Document::fileExists(const std::string& tinygltfPath) {
     if (!tinygltfPath.starts_with(kFolder + "/")) return false;
     const std::string uri = tinygltfPath.substr(kFolder.size() + 1);
-    missingFile_ = uri.substr(0, 200);
+    const std::string shown = '"' + uri.substr(0, 200) + '"';
+    missingFile_ = shown + " does not exist";
     if (uri.starts_with("data:")) return false;
     std::error_code ignored;
-    return std::filesystem::is_regular_file(resolve(uri), ignored);
+    const std::filesystem::file_status status = std::filesystem::status(resolve(uri), ignored);
+    if (std::filesystem::is_directory(status)) missingFile_ = shown + " is a directory";
+    else if (std::filesystem::exists(status)) missingFile_ = shown + " is not a regular file";
+    return std::filesystem::is_regular_file(status);
 }
 
 bool Document::readWholeFile(std::vector<unsigned char>& out, const std::string& tinygltfPath) {

@@ -73,7 +73,7 @@ private:
     std::vector<std::vector<uint8_t>> decompressed_;  ///< by buffer view; empty where it is not compressed
     std::vector<uint64_t> externalBufferLengths_;
     size_t externalBuffersRead_ = 0;
-    std::string missingFile_;  ///< the last file that was asked for and is not there
+    std::string missingFile_;  ///< the last file that was asked for, and that it is not there
     std::filesystem::path lastImageFile_;
     uint64_t digest_ = 0;
     uint64_t byteCount_ = 0;

@@ -72,6 +72,17 @@ TEST(GltfErrors, MissingBufferIsNamed) {
                       {"a.gltf", "no such.bin", "does not exist"});
 }
 
+TEST(GltfErrors, BuffersThatAreNoFilesSayWhatTheyAre) {
+    TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "all");
+    std::filesystem::create_symlink("/dev/zero", folder / "zero");
+    for (const auto& [name, what] : {std::pair("all", "\"all\" is a directory"), {"zero", "\"zero\" is not a regular file"}}) {
+        writeFileAtomically(folder / "a.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":4,"uri":")" + std::string(name) + "\"}]}");
+        MessageLog log;
+        expectError(ErrorKind::BadInput, [&] { loadGltf(folder / "a.gltf", log); }, {"a.gltf", what});
+    }
+}
+
 TEST(GltfErrors, NamesThatLeadOutOfTheFolder) {
     for (const std::string uri : {"../secret.bin", "/etc/hostname", "a/../../secret.bin", "%2e%2e/secret.bin",
                                   "file:///etc/hostname", "http://example.org/x.bin"})

@@ -2,6 +2,7 @@
 #include "scene/load.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <stdlib.h>
 
 #include <array>
@@ -136,6 +137,10 @@ TEST(FindScene, TakesPathsAsTheyAre) {
     expectError(ErrorKind::BadInput, [&] { findScene((folder / "y.json").string()); }, {"y.json: no such file"});
     expectError(ErrorKind::BadInput, [&] { findScene(folder.path().string()); }, {"is a directory"});
     expectError(ErrorKind::BadInput, [] { findScene("y.glb"); }, {"y.glb: no such file"});
+    ASSERT_EQ(mkfifo((folder / "pipe.gltf").c_str(), 0600), 0);
+    std::filesystem::create_symlink("/dev/zero", folder / "link.glb");
+    for (const char* name : {"pipe.gltf", "link.glb"})
+        expectError(ErrorKind::BadInput, [&] { findScene((folder / name).string()); }, {name, "is not a regular file"});
     expectError(ErrorKind::BadInput, [] { findScene(""); }, {"no such file"});
 }
 
