@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "measure/measure.h"
 #include "measure/temporal.h"
 #include "reconstruct/catalog.h"
@@ -15,31 +19,41 @@ constexpr const char* kExitCodes =
     "Exit codes: 0 good; 1 a check did not hold; 2 usage, unknown scene, module, metric or id; 3 bad input, images of\n"
     "different size, replayed scene changed; 4 no display or OpenGL; 5 memory limit, disk full; 130 interrupted.";
 
-std::string sceneList() {
-    std::string text = "Scenes: a path (.json .gltf .glb .obj, or an .hdr/.exr sky), or one of:\n";
-    for (const SceneEntry& entry : listScenes())
-        text += fmt::format("  {:<16}{}{}\n", entry.name, entry.title, entry.missing.empty() ? "" : " (needs $LUMISCOPE_ASSETS)");
+using Rows = std::vector<std::pair<std::string, std::string>>;  // names and what they are
+
+/// Two columns, the second two spaces after the longest name.
+std::string columns(const Rows& rows) {
+    size_t width = 0;
+    for (const auto& [name, meaning] : rows) width = std::max(width, name.size());
+    std::string text;
+    for (const auto& [name, meaning] : rows) text += fmt::format("  {:<{}}{}\n", name, width + 2, meaning);
     return text;
+}
+
+std::string sceneList() {
+    Rows rows;
+    for (const SceneEntry& entry : listScenes())
+        rows.emplace_back(entry.name, entry.title + (entry.missing.empty() ? "" : " (needs $LUMISCOPE_ASSETS)"));
+    return "Scenes: a path (.json .gltf .glb .obj, or an .hdr/.exr sky), or one of:\n" + columns(rows);
 }
 
 std::string moduleList() {
-    std::string text = "Modules:\n";
-    for (const ModuleEntry& entry : moduleCatalog()) text += fmt::format("  {:<14}{}\n", entry.id, entry.title);
-    return text + "  An instance is a module with parameters of its own: svgf, svgf@b.\n";
+    Rows rows;
+    for (const ModuleEntry& entry : moduleCatalog()) rows.emplace_back(entry.id, entry.title);
+    return "Modules:\n" + columns(rows) + "  An instance is a module with parameters of its own: svgf, svgf@b.\n";
 }
 
 std::string metricList() {
-    std::string text = "Metrics:\n";
-    for (const Metric& metric : metricCatalog()) text += fmt::format("  {:<14}{}\n", metric.id, metric.title);
-    text += "Of frames also:\n";
-    for (const SequenceMetric& metric : sequenceMetricCatalog()) text += fmt::format("  {:<22}{}\n", metric.id, metric.title);
-    return text;
+    Rows images, sequences;
+    for (const Metric& metric : metricCatalog()) images.emplace_back(metric.id, metric.title);
+    for (const SequenceMetric& metric : sequenceMetricCatalog()) sequences.emplace_back(metric.id, metric.title);
+    return "Metrics:\n" + columns(images) + "Of frames also:\n" + columns(sequences);
 }
 
 std::string studyList() {
-    std::string text = "Studies:\n";
-    for (const StudyListing& study : listStudies()) text += fmt::format("  {:<22}{}\n", study.name, study.title);
-    return text;
+    Rows rows;
+    for (const StudyListing& study : listStudies()) rows.emplace_back(study.name, study.title);
+    return "Studies:\n" + columns(rows);
 }
 
 }  // namespace
