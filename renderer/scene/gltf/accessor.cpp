@@ -29,6 +29,11 @@ size_t componentBytes(int type) {
     }
 }
 
+bool isIndexType(int type) {
+    return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+           type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+}
+
 template <class From, class To>
 void convertRun(const Elements& from, float scale, float lowest, To* out, size_t outStride) {
     for (size_t i = 0; i < from.count; ++i) {
@@ -102,11 +107,9 @@ public:
                        std::to_string(elements_.components));
     }
     void expectIntegers(const std::string& jsonPath) const {
-        const int type = elements_.componentType;
-        if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-            type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
+        if (!isIndexType(elements_.componentType))
             document_.fail(jsonPath, path_ + " does not hold unsigned integers", "5121, 5123 or 5125",
-                           std::to_string(type));
+                           std::to_string(elements_.componentType));
     }
 
     template <class To>
@@ -134,6 +137,10 @@ private:
         if (accessor_->bufferView < 0) return;
         const std::span<const uint8_t> view = document_.bufferView(accessor_->bufferView, path_ + "/bufferView");
         const size_t stride = document_.model().bufferViews[static_cast<size_t>(accessor_->bufferView)].byteStride;
+        if (stride > 0 && stride < elementBytes() && elements_.count > 1)
+            document_.fail("/bufferViews/" + std::to_string(accessor_->bufferView) + "/byteStride",
+                           "is less than an element of " + path_, "at least " + std::to_string(elementBytes()),
+                           std::to_string(stride));
         elements_.stride = stride > 0 ? stride : elementBytes();
         checkFits(view.size(), accessor_->byteOffset, elements_.stride, elements_.count, elementBytes(), path_);
         elements_.data = view.data() + accessor_->byteOffset;
@@ -175,6 +182,9 @@ private:
                            std::to_string(sparse.count));
         const Elements places = sparseArray(sparse.indices.bufferView, sparse.indices.byteOffset,
                                             sparse.indices.componentType, 1, path + "/indices");
+        if (!isIndexType(sparse.indices.componentType))
+            document_.fail(path + "/indices/componentType", "does not hold unsigned integers", "5121, 5123 or 5125",
+                           std::to_string(sparse.indices.componentType));
         const Elements values = sparseArray(sparse.values.bufferView, sparse.values.byteOffset, elements_.componentType,
                                             elements_.components, path + "/values");
         std::vector<uint32_t> indices(places.count);

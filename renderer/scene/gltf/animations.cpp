@@ -18,9 +18,11 @@ std::optional<AnimatedProperty> propertyOf(const std::string& path) {
     return std::nullopt;
 }
 
-Interpolation interpolationOf(const std::string& name) {
+Interpolation interpolationOf(const Document& document, const std::string& name, const std::string& path) {
     if (name == "STEP") return Interpolation::Step;
     if (name == "CUBICSPLINE") return Interpolation::CubicSpline;
+    if (!name.empty() && name != "LINEAR")
+        document.fail(path, "no such interpolation", "LINEAR, STEP or CUBICSPLINE", '"' + name.substr(0, 40) + '"');
     return Interpolation::Linear;
 }
 
@@ -30,6 +32,16 @@ std::vector<float> readTimes(const Document& document, int accessor, const std::
         if (!std::isfinite(times[i]) || (i > 0 && times[i] < times[i - 1]))
             document.fail(path, "key " + std::to_string(i) + ": times must be finite and ascend");
     return times;
+}
+
+/// A weight for each target of the node's mesh, no more and no less; without targets they move nothing.
+void checkWeights(const Document& document, const AnimationChannel& channel, int node, const std::string& path) {
+    const int mesh = document.model().nodes[static_cast<size_t>(node)].mesh;
+    if (mesh < 0 || document.model().meshes[static_cast<size_t>(mesh)].primitives.empty()) return;
+    const size_t targets = document.model().meshes[static_cast<size_t>(mesh)].primitives[0].targets.size();
+    if (targets > 0 && targets != static_cast<size_t>(channel.components))
+        document.fail(path, "has not one weight a key for each morph target", std::to_string(targets),
+                      std::to_string(channel.components));
 }
 
 /// One channel, or nothing if it moves nothing of the scene.
@@ -48,7 +60,7 @@ std::optional<AnimationChannel> readChannel(const Document& document, const Node
     AnimationChannel channel;
     channel.node = tree.nodeOf(static_cast<size_t>(source.target_node));
     channel.property = *property;
-    channel.interpolation = interpolationOf(sampler.interpolation);
+    channel.interpolation = interpolationOf(document, sampler.interpolation, samplerPath + "/interpolation");
     channel.times = readTimes(document, sampler.input, samplerPath + "/input");
     if (channel.node < 0 || channel.times.empty()) return std::nullopt;
     const size_t rows = channel.times.size() * (channel.interpolation == Interpolation::CubicSpline ? 3 : 1);
@@ -59,6 +71,7 @@ std::optional<AnimationChannel> readChannel(const Document& document, const Node
         document.fail(samplerPath + "/output", "its count does not fit the keys",
                       width > 1 ? std::to_string(rows) : "a multiple of " + std::to_string(rows),
                       std::to_string(channel.values.size() / static_cast<size_t>(width)));
+    if (width == 1) checkWeights(document, channel, source.target_node, samplerPath + "/output");
     for (const float value : channel.values)
         if (!std::isfinite(value)) document.fail(samplerPath + "/output", "a value is not finite");
     return channel;

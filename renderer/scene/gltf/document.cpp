@@ -133,6 +133,7 @@ void Document::parse(std::span<const uint8_t> file) {
         throwBadInput({.what = "the buffer file " + missingFile_, .where = name_});
     if (!good) throwBadInput({.what = "damaged glTF: " + firstLine(error), .where = name_});
 
+    checkVersion();
     images_.resize(model_.images.size());
     for (size_t i = 0; i < images_.size(); ++i) {
         const tinygltf::Image& image = model_.images[i];
@@ -140,6 +141,16 @@ void Document::parse(std::span<const uint8_t> file) {
         images_[i].name = !image.uri.empty() ? image.uri : !image.name.empty() ? image.name
                                                                                : "image " + std::to_string(i);
     }
+}
+
+/// glTF: any 2.x may be read by who knows 2.0, unless minVersion asks for more.
+void Document::checkVersion() const {
+    const tinygltf::Asset& asset = model_.asset;
+    const auto shown = [](const std::string& text) { return '"' + text.substr(0, 40) + '"'; };
+    if (!asset.version.starts_with("2."))
+        fail("/asset/version", "not a version of glTF that is read", "\"2.0\" or another of 2.x", shown(asset.version));
+    if (!asset.minVersion.empty() && asset.minVersion != "2.0")
+        fail("/asset/minVersion", "the file requires a newer version of glTF", "\"2.0\"", shown(asset.minVersion));
 }
 
 void Document::checkRequiredExtensions(const std::vector<std::string>& names) const {

@@ -61,6 +61,7 @@ public:
 private:
     void parse(std::span<const uint8_t> file);
     void decompressViews();
+    void checkVersion() const;
     void checkRequiredExtensions(const std::vector<std::string>& names) const;
     std::filesystem::path resolve(const std::string& uri) const;
 

@@ -19,7 +19,7 @@ float unit(double value, float otherwise) {
 class MaterialReader {
 public:
     MaterialReader(const Document& document, TextureLibrary& library, const tinygltf::Material& source, size_t index)
-        : library_(library), source_(source), path_("/materials/" + std::to_string(index)) {
+        : document_(document), library_(library), source_(source), path_("/materials/" + std::to_string(index)) {
         material_.name = source.name.empty() ? "material " + std::to_string(index) : source.name;
     }
 
@@ -36,6 +36,7 @@ public:
         if (const auto* extension = find("KHR_materials_iridescence")) readIridescence(*extension);
         if (const auto* extension = find("KHR_materials_emissive_strength"))
             material_.emission *= std::max(0.0f, numberOf(*extension, "emissiveStrength", 1));
+        limitEmission();
         if (find("KHR_materials_unlit")) makeUnlit();
         return std::move(material_);
     }
@@ -71,7 +72,7 @@ private:
             core(pbr.metallicRoughnessTexture, "pbrMetallicRoughness/metallicRoughnessTexture", TextureUse::Data);
         material_.normalTexture = core(source_.normalTexture, "normalTexture", TextureUse::Normal);
         material_.normalScale = std::clamp(static_cast<float>(source_.normalTexture.scale), -16.0f, 16.0f);
-        material_.emission = clampedColour(vec3From(source_.emissiveFactor, Vec3(0)), 1e9f);
+        material_.emission = glm::max(vec3From(source_.emissiveFactor, Vec3(0)), Vec3(0));
         material_.emissionTexture = core(source_.emissiveTexture, "emissiveTexture", TextureUse::Colour);
         material_.doubleSided = source_.doubleSided;
         material_.alphaMode = source_.alphaMode == "MASK"    ? AlphaMode::Mask
@@ -161,6 +162,14 @@ private:
         }
     }
 
+    /// Beyond, sums over paths overflow.
+    void limitEmission() {
+        constexpr float kMost = 1e9f;
+        if (maxComponent(material_.emission) <= kMost) return;
+        document_.warn(path_ + " emits beyond any light; it is taken down to 1e9 W/(m^2 sr)");
+        material_.emission = clampedColour(material_.emission, kMost);
+    }
+
     /// Unlit surfaces show their colour whatever the light: they emit it and scatter nothing.
     void makeUnlit() {
         material_.unlit = true;
@@ -170,9 +179,12 @@ private:
         material_.metallic = 0;
         material_.specular = 0;
         material_.transmission = 0;
+        material_.clearcoat = material_.anisotropy = material_.iridescence = 0;
+        material_.sheenColor = Vec3(0);
         material_.doubleSided = true;
     }
 
+    const Document& document_;
     TextureLibrary& library_;
     const tinygltf::Material& source_;
     std::string path_;

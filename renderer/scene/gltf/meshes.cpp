@@ -81,6 +81,7 @@ private:
         document_.pollStop();
         const tinygltf::Primitive& primitive = source_.primitives[p];
         const std::string path = path_ + "/primitives/" + std::to_string(p);
+        checkVariants(primitive, path);
         int material = materialIndex(primitive, variant_);
         if (material < 0)
             material = static_cast<int>(materials_.size()) - 1;
@@ -109,6 +110,17 @@ private:
         Mesh& mesh = parts_[part];
         mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
         mesh.triangleMaterial.resize(mesh.triangles.size(), static_cast<uint32_t>(material));
+    }
+
+    /// Also of the variants that are not chosen: a file is wrong or right whatever is asked of it.
+    void checkVariants(const tinygltf::Primitive& primitive, const std::string& path) const {
+        const auto* extension = extensionOf(primitive.extensions, "KHR_materials_variants");
+        if (!extension || !extension->Has("mappings") || !extension->Get("mappings").IsArray()) return;
+        const tinygltf::Value& mappings = extension->Get("mappings");
+        for (int m = 0; m < static_cast<int>(mappings.ArrayLen()); ++m)
+            document_.checkIndex(integerOf(mappings.Get(m), "material", -1), materials_.size() - 1,
+                                 path + "/extensions/KHR_materials_variants/mappings/" + std::to_string(m) + "/material",
+                                 "materials");
     }
 
     /// Normals and tangents: what one part has, all have, since they become one mesh.

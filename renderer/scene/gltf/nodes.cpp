@@ -261,6 +261,9 @@ void NodeTree::addLight(size_t index) {
         light.outerConeDeg = std::clamp(degrees(static_cast<float>(source.spot.outerConeAngle)), 0.01f, 90.0f);
         light.innerConeDeg = std::clamp(degrees(static_cast<float>(source.spot.innerConeAngle)), 0.0f, light.outerConeDeg);
     }
+    if (source.type != "directional" && source.type != "spot" && source.type != "point")
+        document_.fail("/extensions/KHR_lights_punctual/lights/" + std::to_string(number) + "/type",
+                       "no such type of light", "directional, point or spot", '"' + source.type.substr(0, 40) + '"');
     scene_.lights.push_back(std::move(light));
 }
 

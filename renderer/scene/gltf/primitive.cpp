@@ -99,6 +99,14 @@ private:
     const DracoMesh* draco_;
 };
 
+/// Morph targets move positions, normals and tangents alone.
+void warnOfLeftOut(const Document& document, const std::vector<std::map<std::string, int>>& targets) {
+    for (const std::map<std::string, int>& target : targets)
+        for (const auto& [name, accessor] : target)
+            if (name.starts_with("TEXCOORD_") || name.starts_with("COLOR_"))
+                document.warn("morph targets of " + name.substr(0, name.find('_')) + " are left out");
+}
+
 Vec3 unitOr(const Vec3& v, const Vec3& otherwise) {
     const float length = glm::length(v);
     return length > 0 && std::isfinite(length) ? v / length : otherwise;
@@ -143,6 +151,7 @@ Mesh readVertices(const Document& document, const tinygltf::Primitive& primitive
             mesh.uv[set] = reader.read<Vec2>(attributes, "TEXCOORD_" + std::to_string(uvSets[set]));
     mesh.colours = reader.readColours(attributes);
     mesh.skin = reader.readSkin(attributes);
+    warnOfLeftOut(document, primitive.targets);
     for (const std::map<std::string, int>& target : primitive.targets)
         mesh.morphTargets.push_back({targets.read<Vec3>(target, "POSITION"), targets.read<Vec3>(target, "NORMAL"),
                                      targets.read<Vec3>(target, "TANGENT")});

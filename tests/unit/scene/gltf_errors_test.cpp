@@ -257,6 +257,85 @@ TEST(GltfCounts, InstancesTakeNoMoreRoomThanTheyNeed) {
     EXPECT_LE(scene.nodes.capacity(), 40001u);
 }
 
+void expectRefused(const std::function<void(GltfBuilder&)>& breakIt, const std::initializer_list<std::string>& parts) {
+    GltfBuilder file;
+    file.triangle();
+    breakIt(file);
+    file.expectRefused(parts);
+}
+
+TEST(GltfErrors, VersionsThatAreNotRead) {
+    expectRefused([](auto& f) { f.json["asset"]["version"] = "3.0"; }, {"/asset/version", "\"3.0\""});
+    expectRefused([](auto& f) { f.json["asset"]["minVersion"] = "2.1"; }, {"/asset/minVersion", "newer", "\"2.1\""});
+    GltfBuilder newer;
+    newer.triangle();
+    newer.json["asset"] = {{"version", "2.1"}, {"minVersion", "2.0"}};
+    EXPECT_EQ(newer.load().instances.size(), 1u);
+}
+
+TEST(GltfErrors, WordsThatTheSpecificationDoesNotKnow) {
+    expectRefused(
+        [](auto& f) {
+            f.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}, {{"type", "weird"}}};
+            f.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 1;
+        },
+        {"/extensions/KHR_lights_punctual/lights/1/type", "weird"});
+    expectRefused(
+        [](auto& f) {
+            const int times = f.floats({0, 1}, "SCALAR", 1), values = f.floats({1, 1, 1, 2, 2, 2}, "VEC3", 3);
+            f.json["animations"] = {
+                {{"samplers", {{{"input", times}, {"output", values}, {"interpolation", "BOGUS"}}}},
+                 {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}}}}};
+        },
+        {"/animations/0/samplers/0/interpolation", "BOGUS"});
+}
+
+TEST(GltfErrors, ElementsThatOverlapOrCountInFloats) {
+    expectRefused([](auto& f) { f.json["bufferViews"][0]["byteStride"] = 4; }, {"/bufferViews/0/byteStride", "found 4"});
+    expectRefused(
+        [](auto& f) {
+            const float zero = 0, value[3] = {1, 2, 3};
+            const int indices = f.view(&zero, 4), values = f.view(value, 12);
+            f.json["accessors"][0]["sparse"] = {{"count", 1},
+                                                {"indices", {{"bufferView", indices}, {"componentType", 5126}}},
+                                                {"values", {{"bufferView", values}}}};
+        },
+        {"/accessors/0/sparse/indices/componentType", "5126"});
+}
+
+TEST(GltfErrors, WeightsForTargetsThatAreNotThere) {
+    expectRefused(
+        [](auto& f) {
+            const int times = f.floats({0, 1}, "SCALAR", 1), weights = f.floats(std::vector<float>(200, 0), "SCALAR", 1);
+            f.primitive()["targets"] = {{{"POSITION", f.primitive()["attributes"]["POSITION"]}}};
+            f.json["animations"] = {{{"samplers", {{{"input", times}, {"output", weights}}}},
+                                     {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
+        },
+        {"/animations/0/samplers/0/output", "expected 1", "found 100"});
+}
+
+TEST(GltfErrors, MorphedCoordinatesAreReported) {
+    GltfBuilder file;
+    file.triangle();
+    const int uv = file.floats({0, 0, 1, 0, 0, 1}, "VEC2", 2);
+    file.primitive()["attributes"]["TEXCOORD_0"] = uv;
+    file.primitive()["targets"] = {{{"TEXCOORD_0", uv}}, {{"TEXCOORD_0", uv}}};
+    MessageLog log;
+    file.load(log);
+    ASSERT_EQ(log.warnings().size(), 1u);
+    EXPECT_NE(log.warnings()[0].find("morph targets of TEXCOORD are left out"), std::string::npos);
+}
+
+TEST(GltfErrors, VariantsAreCheckedWhetherChosenOrNot) {
+    expectRefused(
+        [](auto& f) {
+            f.json["materials"] = {{{"name", "red"}}};
+            f.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "a"}}};
+            f.primitive()["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 77}, {"variants", {0}}}};
+        },
+        {"/meshes/0/primitives/0/extensions/KHR_materials_variants/mappings/0/material", "77"});
+}
+
 TEST(GltfErrors, StoppedLoadsAreInterrupted) {
     GltfBuilder file;
     file.triangle();

@@ -59,6 +59,29 @@ TEST(GltfLayers, NonsenseIsClamped) {
     EXPECT_FLOAT_EQ(m.iridescenceThicknessMax, 0);
 }
 
+TEST(GltfLayers, UnlitScattersNothing) {
+    MessageLog log;
+    const Material m = loaded(R"({"pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.3, 0.4, 1]}, "extensions": {
+        "KHR_materials_unlit": {}, "KHR_materials_clearcoat": {"clearcoatFactor": 1},
+        "KHR_materials_sheen": {"sheenColorFactor": [1, 1, 1]}, "KHR_materials_anisotropy": {"anisotropyStrength": 1},
+        "KHR_materials_iridescence": {"iridescenceFactor": 1}}})", log);
+    EXPECT_FALSE(m.isLayered());
+    EXPECT_EQ(m.emission, Vec3(0.2f, 0.3f, 0.4f));
+}
+
+TEST(GltfLayers, EmissionBeyondSumsIsLimitedAndSaid) {
+    MessageLog log;
+    const Material m = loaded(R"({"emissiveFactor": [1e9, 1e9, 0],
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 1e38}}})", log);
+    EXPECT_EQ(m.emission, Vec3(1e9f, 1e9f, 0));
+    ASSERT_EQ(log.warnings().size(), 1u);
+    EXPECT_NE(log.warnings()[0].find("/materials/0 emits"), std::string::npos);
+    MessageLog quiet;
+    EXPECT_EQ(loaded(R"({"emissiveFactor": [1, 1, 1],
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 1e6}}})", quiet).emission, Vec3(1e6f));
+    EXPECT_TRUE(quiet.warnings().empty());
+}
+
 // What a user can move depends on which layers are there, and moves them.
 TEST(GltfLayers, LayersAreParameters) {
     Material m;
