@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include "image/exr.h"
 #include "image/hdr.h"
 #include "image/png.h"
+#include "robustness/good_files.h"
 #include "robustness/mutate.h"
 #include "robustness/trace_few.h"
 #include "scene/load.h"
@@ -41,10 +43,12 @@ protected:
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    /// Loads `bytes` as a file of that name with everything a session does to a scene: load, pose and trace.
-    void tryScene(const std::string& name, const std::string& bytes, uint64_t seed) {
-        const fs::path path = folder_ / name;
-        writeFileAtomically(path, std::string_view(bytes));
+    void write(const std::string& name, const std::string& bytes) { writeFileAtomically(folder_ / name, std::string_view(bytes)); }
+    /// Loads `bytes` as a file of that name, or `opened`, which names it, with everything a session does to a scene: load,
+    /// pose and trace.
+    void tryScene(const std::string& name, const std::string& bytes, uint64_t seed, const std::string& opened = "") {
+        const fs::path path = folder_ / (opened.empty() ? name : opened);
+        write(name, bytes);
         const std::clock_t start = std::clock();
         try {
             MessageLog log;
@@ -65,17 +69,17 @@ protected:
         EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 10) << name << " seed " << seed;
     }
     /// $LUMISCOPE_SEEDS names a folder that gets the good files, as a corpus for the fuzz targets.
-    void mutateScene(const std::string& name, const std::string& good, bool isText, uint64_t base) {
+    void mutateScene(const std::string& name, const std::string& good, bool isText, uint64_t base, const std::string& opened = "") {
         if (const char* seeds = std::getenv("LUMISCOPE_SEEDS"))
             writeFileAtomically(fs::path(seeds) / (std::to_string(base) + "-" + name), std::string_view(good));
-        tryScene(name, good, 0);
+        tryScene(name, good, 0, opened);
         ASSERT_EQ(accepted_, 1) << "the file is refused before it is damaged";
         for (int i = 0; i < caseCount(); ++i) {
             const uint64_t seed = base + static_cast<uint64_t>(i);
-            tryScene(name, Mutator(seed).mutate(good, isText), seed);
+            tryScene(name, Mutator(seed).mutate(good, isText), seed, opened);
         }
-        // Damage is found often, and not everything is damage.
-        EXPECT_GT(refused_, caseCount() / 20);
+        // Damage is found often, but for files that others name, and not everything is damage.
+        EXPECT_GT(refused_, opened.empty() ? caseCount() / 20 : -1);
         EXPECT_GT(accepted_, caseCount() / 100);
     }
     fs::path folder_;
@@ -138,6 +142,66 @@ TEST_F(Robustness, ImagesOfOtherFormats) {
     test::GltfBuilder file;
     test::addForeignTextures(file);
     mutateScene("images.glb", glbBytes(file), false, 11000000);
+}
+TEST_F(Robustness, GltfWithAllThatIsShaded) {
+    test::GltfBuilder file;
+    test::addAllThatIsShaded(file);
+    mutateScene("rich.gltf", test::asText(file), true, 12000000);
+    accepted_ = refused_ = 0;
+    mutateScene("rich.glb", glbBytes(file), false, 12500000);
+}
+TEST_F(Robustness, MaterialsOfObjFiles) {
+    const std::vector<uint8_t> picture = test::smallPng(120);
+    write("map.png", {picture.begin(), picture.end()});
+    write("mesh.mtl", test::kMaterials);
+    mutateScene("mesh.obj", test::kObjWithMaterials, true, 13000000);
+    accepted_ = refused_ = 0;
+    write("mesh.obj", test::kObjWithMaterials);
+    mutateScene("mesh.mtl", test::kMaterials, true, 13500000, "mesh.obj");
+}
+TEST_F(Robustness, Cages) {
+    write("scene.json", test::kCageScene);
+    mutateScene("cage.obj", test::kCage, true, 14000000, "scene.json");
+}
+/// Each file in turn is taken away, or becomes a folder, when loading tells of its first step, its second and so on.
+TEST_F(Robustness, FilesThatVanishWhileLoading) {
+    test::GltfBuilder rich;
+    test::addAllThatIsShaded(rich);
+    const std::vector<uint8_t> picture = test::smallPng(120);
+    rich.json["images"][1] = {{"uri", "map.png"}};
+    rich.json["buffers"] = {{{"byteLength", rich.bin.size()}, {"uri", "rich.bin"}}};
+    const std::pair<std::string, std::string> files[] = {{"rich.gltf", rich.json.dump()},
+                                                         {"rich.bin", {rich.bin.begin(), rich.bin.end()}},
+                                                         {"map.png", {picture.begin(), picture.end()}},
+                                                         {"mesh.obj", test::kObjWithMaterials},
+                                                         {"mesh.mtl", test::kMaterials},
+                                                         {"cage.obj", test::kCage},
+                                                         {"scene.json", test::kCageScene}};
+    for (const std::string opened : {"rich.gltf", "mesh.obj", "scene.json"})
+        for (const auto& [victim, content] : files)
+            for (int step = 0; step < 12; ++step) {
+                for (const auto& [name, bytes] : files) {
+                    if (fs::is_directory(folder_ / name)) fs::remove(folder_ / name);
+                    write(name, bytes);
+                }
+                LoadOptions options;
+                std::atomic<int> steps{0};
+                options.progress = [&](float, const std::string&) {
+                    if (steps++ != step) return;
+                    fs::remove(folder_ / victim);
+                    if (step % 2) fs::create_directory(folder_ / victim);
+                };
+                try {
+                    MessageLog log;
+                    traceAFew(loadScene(folder_ / opened, log, options));
+                    ++accepted_;
+                } catch (const Error& error) {
+                    EXPECT_EQ(error.kind(), ErrorKind::BadInput) << opened << " without " << victim << ": " << error.what();
+                    ++refused_;
+                }
+            }
+    EXPECT_GT(refused_, 5);
+    EXPECT_GT(accepted_, 100);
 }
 TEST_F(Robustness, RadianceSkies) {
     std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n";
