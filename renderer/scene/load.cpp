@@ -48,16 +48,27 @@ Scene loadUnderSky(const fs::path& path, MessageLog& log, const LoadOptions& opt
     return scene;
 }
 
+/// Only glTF files have several scenes and variants of materials.
+void refuseChoices(const fs::path& path, const LoadOptions& options) {
+    const bool variant = !options.variant.empty();
+    if (!variant && options.sceneIndex < 0) return;
+    throwUsage({variant ? "has no material variants to choose from" : "holds one scene alone", path.filename().string(),
+                variant ? "scene.variant for a .gltf or .glb" : "scene.index for a .gltf or .glb",
+                variant ? options.variant : std::to_string(options.sceneIndex)});
+}
+
 }  // namespace
 
 std::shared_ptr<const Scene> loadScene(const fs::path& path, MessageLog& log, const LoadOptions& options) {
     const std::string extension = lowerExtension(path);
     const bool ours = extension == ".json";
+    const bool gltf = extension == ".gltf" || extension == ".glb";
+    if (!gltf) refuseChoices(path, options);
     if (options.progress) options.progress(0, "reading " + path.filename().string());
     auto scene = std::make_shared<Scene>();
     try {
         if (ours) *scene = loadSceneFile(path, log, options);
-        else if (extension == ".gltf" || extension == ".glb") *scene = loadGltf(path, log, options);
+        else if (gltf) *scene = loadGltf(path, log, options);
         else if (extension == ".obj") *scene = loadObj(path, log, options);
         else if (extension == ".hdr" || extension == ".exr") *scene = loadUnderSky(path, log, options);
         else if (!fs::exists(path)) throwBadInput({"no such file", path.string(), "", ""});

@@ -35,7 +35,8 @@ struct LoadOptions {
 
 /// Loads .json (our own), .gltf, .glb, .obj; an .hdr or .exr gives a material ball under that sky. A scene without a
 /// camera gets `default`, one without light or emission the built-in sky and a warning (not for .json); see README.
-/// Warnings go to `log`. Throws Error(BadInput) with file and position, or Error(Resources).
+/// Warnings go to `log`. Throws Error(BadInput) with file and position, Error(Resources), or Error(Usage) for a scene or
+/// variant asked of a file that has none.
 std::shared_ptr<const Scene> loadScene(const std::filesystem::path& path, MessageLog& log,
                                        const LoadOptions& options = {});
 

@@ -44,6 +44,17 @@ TEST(LoadScene, UnknownKindsAreNamed) {
     expectError(ErrorKind::BadInput, [&] { loadScene(folder / "d.json", log); }, {"d.json: is a directory"});
 }
 
+TEST(LoadScene, OnlyGltfHasScenesAndVariants) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "a.obj", std::string_view("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+    MessageLog log;
+    LoadOptions scene, variant;
+    scene.sceneIndex = 7, variant.variant = "red";
+    expectError(ErrorKind::Usage, [&] { loadScene(folder / "a.obj", log, scene); }, {"one scene", "scene.index", "7"});
+    expectError(ErrorKind::Usage, [&] { loadScene(folder / "a.obj", log, variant); }, {"variants", "scene.variant", "red"});
+    EXPECT_NE(loadScene(folder / "a.obj", log), nullptr);
+}
+
 TEST(LoadScene, BrokenFilesSayWhereAndWhy) {
     const std::array<std::pair<const char*, const char*>, 6> faults{{
         {"truncated.json", "truncated.json:4:49: string without closing quote"},
