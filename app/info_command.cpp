@@ -6,6 +6,7 @@
 #include <set>
 
 #include "app/commands.h"
+#include "base/error.h"
 #include "base/files.h"
 #include "base/memory.h"
 #include "scene/material_textures.h"
@@ -162,10 +163,17 @@ void printChecks(const std::vector<FrameCheck>& checks) {
 int runInfo(const SceneOptions& options, bool check, const std::filesystem::path& writeCameraPath, const MachineOptions& machine, MessageLog& log,
             std::stop_token stop) {
     const std::filesystem::path file = findScene(options.scene);
+    const auto pollStop = [&] {
+        if (stop.stop_requested()) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
+    };
     const auto scene = openScene(file, options, log, stop);
+    pollStop();
     const Document document = makeDocument(scene, options, log);
+    const auto posed = poseScene(document.scene(), {0, 0, 0});
+    pollStop();
     Tracer tracer;
-    tracer.bind(poseScene(document.scene(), {0, 0, 0}));
+    tracer.bind(posed);
+    pollStop();
     const SceneMemory memory = memoryOf(*scene, tracer);
     std::vector<FrameCheck> checks;
     if (check) checks = checkFrames(document, tracer, stop);
