@@ -18,6 +18,9 @@ cd "$source_dir"
 cmake --preset fuzz >/dev/null
 cmake --build --preset fuzz --target "${targets[@]/#/fuzz_}"
 
+# Embree and Mesa keep allocations of their own until the process ends.
+export LSAN_OPTIONS=suppressions=$source_dir/tests/sanitizers/lsan.supp:print_suppressions=0
+
 # Good files: what test_robustness damages, the shipped scenes and studies, and the assets if they are here.
 robustness=build/release/bin/test_robustness
 seeds=$corpus/seeds

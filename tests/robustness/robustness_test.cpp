@@ -1,5 +1,5 @@
 // Damaged files: every loader either succeeds or says in one line, as an Error, what is wrong; it never crashes, never
-// takes long, and never lets another exception out. $LUMISCOPE_MUTATIONS sets the number of cases (default 1500).
+// takes long, and never lets another exception out. $LUMISCOPE_MUTATIONS sets the number of cases (default 600).
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 int caseCount() {
     const char* text = std::getenv("LUMISCOPE_MUTATIONS");
-    return text ? std::atoi(text) : 1500;
+    return text ? std::atoi(text) : 600;
 }
 
 fs::path assets() {

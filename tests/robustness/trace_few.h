@@ -1,12 +1,20 @@
 #pragma once
+#include <cmath>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
-#include "scene/light.h"
+#include "scene/posed_scene.h"
+#ifndef LUMISCOPE_POSE_ONLY
 #include "trace/contract_check.h"
 #include "trace/tracer.h"
+#endif
 
 namespace lumi {
+
+#ifdef LUMISCOPE_POSE_ONLY
+inline void traceAFew(std::shared_ptr<const Scene> scene) { poseScene(std::move(scene), {0.3f, 0.3f, 0.2f}); }
+#else
 
 /// The first camera; where there is none, one that sees what is there.
 inline Camera someCamera(const PosedScene& posed) {
@@ -59,5 +67,6 @@ inline void traceAFew(std::shared_ptr<const Scene> loaded) {
         ++sampling.frame, ++sampling.firstSample;
     }
 }
+#endif
 
 }  // namespace lumi
