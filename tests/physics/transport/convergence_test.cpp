@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "support/image_tests.h"
+#include "support/expect_error.h"
 #include "support/transport_scene.h"
 
 namespace lumi {
@@ -128,7 +129,7 @@ TEST(Oddities, SpoiledVerticesAndMaterialsDoNotSpread) {
     TinyScene tiny = boxScene();
     Mesh spoiled = boxMesh(Vec3(0.5f));
     spoiled.positions[0] = Vec3(nan, 0, 0);
-    spoiled.positions[5] = Vec3(infinity);
+    spoiled.positions[5] = Vec3(nan);
     for (size_t i = 0; i < spoiled.normals.size(); i += 2) spoiled.normals[i] = Vec3(nan);
     Material bad = lambert(Vec3(nan, 2, -1));
     bad.roughness = nan;
@@ -149,6 +150,14 @@ TEST(Oddities, SpoiledVerticesAndMaterialsDoNotSpread) {
             ASSERT_TRUE(sky || std::isfinite(image.data()[i])) << signalInfo(signal).name;
         }
     }
+}
+
+TEST(Oddities, InfiniteVerticesAreRefused) {
+    TinyScene tiny = boxScene();
+    Mesh endless = boxMesh(Vec3(0.5f));
+    endless.positions[5] = Vec3(std::numeric_limits<float>::infinity());
+    tiny.add(std::move(endless), lambert(0.5f));
+    expectError(ErrorKind::BadInput, [&] { tiny.pose(); }, {"too far", "found inf"});
 }
 
 TEST(Oddities, ClampLimitsWhatComesAfterTheFirstSurface) {
