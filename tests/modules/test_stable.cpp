@@ -67,15 +67,26 @@ TEST(Stable, KeepsItsDensityWhileTheCameraMoves) {
     }
 }
 
+/// The balls at rest, in linear colours.
+class StillView {
+public:
+    StillView(Extent2 extent, int depth) : rig_(extent), posed_(balls().pose()) {
+        rig_.path = plainPaths(depth);
+        module.resize(extent);
+        set(module, "tone-mapped", false);
+    }
+    Image run(FrameNumber frame) { return rig_.run(module, frame, posed_, view(), {}); }
+
+    StableModule module;
+
+private:
+    Rig rig_;
+    std::shared_ptr<const PosedScene> posed_;
+};
+
 // The samples of a still view stay, and their light converges to the mean over all paths of just these samples.
 TEST(Stable, AStillViewConvergesLikeTheMeanOfItsSamples) {
-    const Extent2 extent{24, 16};
-    const auto posed = balls().pose();
-    Rig rig(extent);
-    rig.path = plainPaths(2);
-    StableModule module;
-    module.resize(extent);
-    set(module, "tone-mapped", false);
+    StillView still({24, 16}, 2);
     const auto squares = [](const Image& a, const Image& b) {
         double sum = 0;
         for (size_t i = 0; i < a.size(); ++i) sum += sqr(a.data()[i] - b.data()[i]);
@@ -85,42 +96,36 @@ TEST(Stable, AStillViewConvergesLikeTheMeanOfItsSamples) {
     constexpr FrameNumber kFrames = 1500;
     std::vector<uint32_t> words;
     for (FrameNumber frame = 0; frame < kFrames; ++frame) {
-        at = rig.run(module, frame, posed, view(), {});
-        if (frame == 8) words = module.samples().words;
+        at = still.run(frame);
+        if (frame == 8) words = still.module.samples().words;
         if (frame == 16) at16 = at;
         if (frame == 64) at64 = at;
     }
-    EXPECT_EQ(module.samples().words, words);
-    EXPECT_GT(module.convergence().samples, static_cast<uint64_t>(kFrames - 8));  // since the last sample was added
+    EXPECT_EQ(still.module.samples().words, words);
+    EXPECT_GT(still.module.convergence().samples, static_cast<uint64_t>(kFrames - 8));  // since the last sample was added
     const double ratio = squares(at16, at) / squares(at64, at);  // 4, less what `at` itself errs
     EXPECT_GT(ratio, 3);
     EXPECT_LT(ratio, 5.5);
 }
 
-// The same over 256 frames, with the slope printed. Ten seconds: by hand, with --gtest_also_run_disabled_tests.
-TEST(Stable, DISABLED_TheErrorOfAStillViewFallsLikeOneOverN) {
-    const Extent2 extent{48, 36};
-    const auto posed = balls().pose();
-    Rig rig(extent);
-    rig.path = plainPaths(3);
-    StableModule module;
-    module.resize(extent);
-    set(module, "tone-mapped", false);
+// The same over 256 frames, with the slope printed.
+TEST(Stable, TheErrorOfAStillViewFallsLikeOneOverN) {
+    StillView still({48, 36}, 3);
     constexpr FrameNumber kAll = 4096, kFirst = 8, kLast = 256;
     std::map<FrameNumber, Image> means;  // by frames
     std::map<FrameNumber, double> shares;  // mean of 1/n over the samples: some were there a few frames before others
     for (FrameNumber frame = 1; frame <= kAll; ++frame) {
-        const Image at = rig.run(module, frame - 1, posed, view(), {});
+        const Image at = still.run(frame - 1);
         if (!std::has_single_bit(static_cast<uint64_t>(frame))) continue;
         means[frame] = at;
-        for (const SampleNote& note : module.samples().notes) shares[frame] += 1.0 / note.directCount;
+        for (const SampleNote& note : still.module.samples().notes) shares[frame] += 1.0 / note.directCount;
     }
     // A mean of n paths is part of that of all N, so that their squared distance is the variance times 1/n - 1/N.
     double sumX = 0, sumY = 0, sumXX = 0, sumXY = 0, count = 0;
     for (FrameNumber n = kFirst; n <= kLast; n *= 2) {
         double squares = 0;
         for (size_t i = 0; i < means[n].size(); ++i) squares += sqr(static_cast<double>(means[n].data()[i]) - means[kAll].data()[i]);
-        const double samples = static_cast<double>(module.samples().size()), paths = samples / shares[n];
+        const double samples = static_cast<double>(still.module.samples().size()), paths = samples / shares[n];
         const double error = squares / static_cast<double>(means[n].size()) / (1 - shares[kAll] / shares[n]);
         const double x = std::log(paths), y = std::log(error);
         sumX += x, sumY += y, sumXX += x * x, sumXY += x * y, ++count;
