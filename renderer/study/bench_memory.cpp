@@ -3,10 +3,8 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <numeric>
-#include <string>
 
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -27,13 +25,9 @@ MemoryPeak::MemoryPeak() {
 }
 
 std::optional<uint64_t> MemoryPeak::bytes() const {
-    std::ifstream status("/proc/self/status");
-    for (std::string line; good_ && std::getline(status, line);)
-        if (line.starts_with("VmHWM:")) {
-            const uint64_t peak = std::strtoull(line.c_str() + 6, nullptr, 10) * 1024;
-            return peak > before_ ? peak - before_ : 0;
-        }
-    return std::nullopt;
+    if (!good_) return std::nullopt;
+    const uint64_t peak = peakResidentBytes();
+    return peak > before_ ? peak - before_ : 0;
 }
 
 MemoryStream::MemoryStream(size_t bytes) : values_(std::max<size_t>(bytes / sizeof(float), 1), 1.0f) {

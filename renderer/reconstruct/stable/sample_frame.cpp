@@ -42,11 +42,6 @@ uint32_t beginPixels(SampleFrame& frame, SampleSet& next) {
 
 }  // namespace
 
-void SampleSet::resize(size_t count, bool withIndirect) {
-    locations.resize(count), inWorld.resize(count), places.resize(count), flags.resize(count), notes.resize(count);
-    direct.resize(count), indirect.resize(withIndirect ? count : 0);
-}
-
 size_t SampleFrame::bytes() const {
     return colours.size() * sizeof(Vec3) + verdicts.size() * 2 + motions.size() * sizeof(Vec2) + changes.size() * sizeof(PixelChange) + reprojected.bytes() + chunkSums.size() * 4;
 }

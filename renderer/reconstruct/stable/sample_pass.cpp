@@ -135,8 +135,8 @@ bool BlockTracer::trace() {
 
 void BlockTracer::keepLight(bool anyHidden) {
     const GatheringState& state = pass_.light;
-    const bool still = pass_.gathering.converge && state.still, averages = still || pass_.gathering.averageDirect;
-    const bool plain = pass_.next.indirect.empty() && !averages && !anyHidden;
+    const bool still = pass_.gathering.converge && state.still;
+    const bool plain = pass_.next.indirect.empty() && !pass_.averagesDirect() && !anyHidden;
     SampleNote* const notes = pass_.next.notes.data();
     for (size_t slot = 0; slot < batch_.sampleCount; ++slot) {
         const uint32_t i = batch_.samples[slot];
@@ -163,7 +163,7 @@ void BlockTracer::addLight(size_t slot, uint32_t i, bool still) {
         direct -= indirect;
         addToAverage(pass_.next.indirect[i], note.indirectCount, indirect, still, pass_.gathering);
     }
-    if (still || pass_.gathering.averageDirect) {
+    if (pass_.averagesDirect()) {
         addToAverage(pass_.next.direct[i], note.directCount, direct, still, pass_.gathering);
     } else {
         pass_.next.direct[i] = direct;
@@ -176,8 +176,7 @@ void BlockTracer::addLight(size_t slot, uint32_t i, bool still) {
 
 bool traceSamples(const SamplePass& pass, VerificationCounts& counts) {
     const SampleRays rays(pass.context.camera);
-    const bool keepsDirect = pass.gathering.averageDirect || (pass.gathering.converge && pass.light.still);
-    const SampleGatherer gatherer(pass.previous, pass.density, pass.random, keepsDirect, pass.frame, pass.next);
+    const SampleGatherer gatherer(pass.previous, pass.density, pass.random, pass.averagesDirect(), pass.frame, pass.next);
     const Extent2 extent = pass.next.extent;
     const int columns = (extent.width + kMostColumns - 1) / kMostColumns, rows = (extent.height + kRows - 1) / kRows;
     const int width = ((extent.width + columns - 1) / columns + kRun - 1) / kRun * kRun;  // of a block

@@ -18,6 +18,9 @@ struct SamplePass {
     SampleFrame& frame;   ///< numbered: see numberSamples()
     SampleSet& next;
     Spares<SampleBatch>& spare;
+
+    /// Is direct light averaged, too, not this frame's alone?
+    bool averagesDirect() const { return gathering.averageDirect || (gathering.converge && light.still); }
 };
 
 /// What verification did.

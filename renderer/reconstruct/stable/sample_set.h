@@ -54,7 +54,7 @@ struct SampleSet {
     std::vector<uint32_t> words;  ///< a pixel
     std::vector<uint32_t> first;  ///< index of each pixel's first sample, and one more: the number of samples
     std::vector<SampleLocation> locations;
-    std::vector<Vec3> inWorld;  ///< position, or direction into the sky; not a number for samples that are evicted
+    std::vector<Vec3> inWorld;  ///< position, metres, or unit direction into the sky; not a number for samples that are evicted
     std::vector<Vec2> places;   ///< on the screen, continuous pixels
     std::vector<uint8_t> flags;
     std::vector<SampleNote> notes;
@@ -65,7 +65,10 @@ struct SampleSet {
     size_t size() const { return locations.size(); }
     Vec3 radiance(size_t i) const { return indirect.empty() ? direct[i] : direct[i] + indirect[i]; }
     /// `withIndirect`: there is indirect light. What vectors hold is not defined then.
-    void resize(size_t count, bool withIndirect);
+    void resize(size_t count, bool withIndirect) {
+        locations.resize(count), inWorld.resize(count), places.resize(count), flags.resize(count), notes.resize(count);
+        direct.resize(count), indirect.resize(withIndirect ? count : 0);
+    }
     size_t bytes() const { return (words.size() + first.size()) * 4 + size() * bytesASample(!indirect.empty()); }
     static constexpr size_t bytesASample(bool withIndirect) {
         return sizeof(SampleLocation) + sizeof(Vec2) + 1 + sizeof(SampleNote) + sizeof(Vec3) * (withIndirect ? 3 : 2);

@@ -98,13 +98,16 @@ TEST_F(ContractCheck, CountsPixels) {
     int64_t surfaces = 0;
     for (int y = 0; y < kExtent.height; ++y)
         for (int x = 0; x < kExtent.width; ++x) surfaces += f.signals.ids(Signal::ObjectId).at(0, x, y) != 0;
+    int rules = 0;
     for (const ContractFinding& finding : checkSignals(f.signals, s, tracer_)) {
         const bool all = finding.rule.find("lies in") != std::string::npos || finding.rule.find("finite") != std::string::npos;
         const bool some = finding.rule.find("unit") != std::string::npos || finding.rule.find("uniform") != std::string::npos;
         if (all || some) {
             EXPECT_EQ(finding.checked, all ? kExtent.area() : surfaces) << finding.rule;
+            ++rules;
         }
     }
+    EXPECT_EQ(rules, 8);
 }
 
 // Its offsets repeat from tile to tile.

@@ -1,6 +1,8 @@
 // Rays that are no rays meet nothing, directions that are none look up some light, and what a transform flattens is seen.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <limits>
 
 #include "support/expect_error.h"
@@ -104,7 +106,10 @@ TEST(SafeRays, WhatATransformFlattensIsSeen) {
     }
     // A whole frame of it, with sky and reflections.
     Signals signals;
-    tracer.sample(frameOf(lookFrom({4, 3, 9}, {4, 0, 0}), {32, 18}, 2, PathSettings(), SignalSet{Signal::Noisy}), signals);
+    const FrameSampling whole = frameOf(lookFrom({4, 3, 9}, {4, 0, 0}), {32, 18}, 2, PathSettings(), SignalSet{Signal::Noisy});
+    ASSERT_TRUE(tracer.sample(whole, signals));
+    const Image& noisy = signals[Signal::Noisy];
+    for (size_t i = 0; i < noisy.size(); ++i) ASSERT_TRUE(std::isfinite(noisy.data()[i])) << i;
 }
 
 /// A mesh that bends, or one of two that move, is flat at time 0.5 and upright again after it.
