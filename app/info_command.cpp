@@ -9,6 +9,8 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/memory.h"
+#include "scene/gltf/choices.h"
+#include "scene/light_body.h"
 #include "scene/material_textures.h"
 #include "scene/posed_scene.h"
 #include "session/signals_check.h"
@@ -59,8 +61,22 @@ SceneMemory memoryOf(const Scene& scene, const Tracer& tracer) {
 
 json vectorJson(const Vec3& v) { return json::array({v.x, v.y, v.z}); }
 
+/// What of a glTF can be chosen, and what is: "scenes" and "variants", empty for other files.
+void addChoices(const std::filesystem::path& file, const Document& document, json& info) {
+    const std::string extension = lowerExtension(file);
+    info["scenes"] = info["variants"] = json::array();
+    if (extension != ".gltf" && extension != ".glb") return;
+    const gltf::Choices choices = gltf::readChoices(file);
+    const int shown = document.sceneIndex() >= 0 ? document.sceneIndex() : choices.defaultScene;
+    for (size_t i = 0; i < choices.scenes.size(); ++i)
+        info["scenes"].push_back({{"index", i}, {"title", choices.scenes[i]}, {"shown", static_cast<int>(i) == shown}});
+    for (const std::string& variant : choices.variants)
+        info["variants"].push_back({{"title", variant}, {"shown", variant == document.sceneVariant()}});
+}
+
 json infoJson(const Scene& scene, const std::filesystem::path& file, const SceneMemory& memory, const MessageLog& log) {
     const Bounds3 bounds = scene.restBounds();
+    const std::vector<bool> ofBodies = bodyMaterials(scene);
     json materials = json::array(), lights = json::array(), cameras = json::array(), instances = json::array();
     std::vector<std::string> materialNames, lightNames, cameraNames;
     for (const Material& m : scene.materials) materialNames.push_back(m.name);
@@ -69,7 +85,8 @@ json infoJson(const Scene& scene, const std::filesystem::path& file, const Scene
     const std::vector<std::string> materialIds = slugs(materialNames, "material"), lightIds = slugs(lightNames, "light"),
                                    cameraIds = slugs(cameraNames, "camera");
     for (size_t i = 0; i < materialIds.size(); ++i)
-        materials.push_back({{"id", materialIds[i]}, {"title", materialNames[i]}, {"emits", scene.materials[i].emits()}});
+        if (!ofBodies[i])
+            materials.push_back({{"id", materialIds[i]}, {"title", materialNames[i]}, {"emits", scene.materials[i].emits()}});
     for (size_t i = 0; i < lightIds.size(); ++i)
         lights.push_back({{"id", lightIds[i]}, {"title", lightNames[i]}, {"type", lightTypeName(scene.lights[i].type)}});
     for (size_t i = 0; i < cameraIds.size(); ++i)
@@ -108,13 +125,30 @@ std::string someOf(const json& things) {
     return text;
 }
 
+/// `0 "day", 1 (shown)`: the second has no name.
+std::string choicesText(const json& things) {
+    std::vector<std::string> texts;
+    for (const json& thing : things) {
+        const std::string title = thing["title"].get<std::string>();
+        std::string text = thing.contains("index") ? std::to_string(thing["index"].get<int>()) : "";
+        if (!title.empty() || text.empty()) text += (text.empty() ? "\"" : " \"") + title + '"';
+        texts.push_back(text + (thing["shown"].get<bool>() ? " (shown)" : ""));
+    }
+    return fmt::format("{}", fmt::join(texts, ", "));
+}
+
 void printInfo(const json& info, const Scene& scene, const SceneMemory& memory) {
     const auto line = [](const char* name, const std::string& text) { std::puts(fmt::format("{:<12}{}", name, text).c_str()); };
     line("scene", info["title"].get<std::string>().empty() ? "(untitled)" : info["title"].get<std::string>());
     line("file", info["path"].get<std::string>());
     line("geometry", fmt::format("{} triangles in {} instances of {} meshes", scene.triangleCount(), scene.instances.size(),
                                  meshCount(scene)));
-    line("materials", fmt::format("{}: {}", scene.materials.size(), someOf(info["materials"])));
+    if (info["scenes"].size() > 1)
+        line("scenes", fmt::format("{}: {}; --set scene.index=N shows another", info["scenes"].size(), choicesText(info["scenes"])));
+    if (!info["variants"].empty())
+        line("variants", fmt::format("{}: {}; --set scene.variant=NAME shows one", info["variants"].size(),
+                                     choicesText(info["variants"])));
+    line("materials", fmt::format("{}: {}", info["materials"].size(), someOf(info["materials"])));
     std::string lights = fmt::format("{}{}{}", scene.lights.size(), scene.lights.empty() ? "" : ": ", someOf(info["lights"]));
     if (const int64_t emitting = emittingMaterials(scene)) lights += fmt::format("; {} emitting materials", emitting);
     if (scene.environment.visible())
@@ -182,6 +216,7 @@ int runInfo(const SceneOptions& options, bool check, const std::filesystem::path
                             formatCameraPath(cameraPathOf(*scene, document.cameraIndex(), document.render().fps),
                                              cameraPathFormatOf(writeCameraPath)));
     json info = infoJson(*scene, file, memory, log);
+    addChoices(file, document, info);
     if (check) info["checks"] = checksJson(checks);
     if (machine.json) std::puts(info.dump(2).c_str());
     else printInfo(info, *scene, memory);

@@ -8,9 +8,8 @@
 #include <unordered_set>
 
 #include "base/parallel.h"
-#include "scene/bounds.h"
 #include "scene/deform.h"
-#include "scene/node_pose.h"
+#include "scene/pose_bounds.h"
 
 namespace lumi {
 namespace {
@@ -85,7 +84,7 @@ bool mayMeet(const Bounds3& box, const Vec3& origin, const std::array<Vec3, kRay
     return false;
 }
 
-/// Adds what the rays from `origin` meet of the instance at rest.
+/// Adds what the rays from `origin` meet of the instance at time 0.
 void traceInstance(const Scene& scene, const NodePose& pose, const Instance& instance, const Vec3& origin,
                    const std::array<Vec3, kRays>& directions, MeshBounds& meshBounds, FirstHits& hits) {
     const Mesh& mesh = *instance.mesh;
@@ -137,7 +136,7 @@ bool illuminates(const Material& material) {
 
 FirstHits lookAround(const Scene& scene, const Vec3& origin) {
     const std::array<Vec3, kRays> directions = spreadDirections();
-    const NodePose pose = poseNodes(scene, {});
+    const NodePose pose = poseNodes(scene, 0.0f);
     FirstHits hits;
     MeshBounds meshBounds;
     for (const Instance& instance : scene.instances)
@@ -182,7 +181,7 @@ float enclosure(const Scene& scene, const Vec3& origin) {
 
 Camera defaultCamera(const Scene& scene) {
     Camera camera;
-    const Bounds3 bounds = scene.restBounds();
+    const Bounds3 bounds = boundsOverTime(scene);
     if (bounds.empty() || !isFinite(bounds.size())) return camera;
     const Vec3 centre = bounds.centre(), half = glm::max(0.5f * bounds.size(), Vec3(1e-6f));
     const FirstHits hits = lookAround(scene, centre);

@@ -8,7 +8,7 @@ namespace lumi {
 /// the centre of the bounds hit something that faces the centre, as a room's walls do and a solid's inside does not, it
 /// stands there and looks along the longer horizontal axis, or, if the room is open at one end of it, stands at that
 /// end. Otherwise, and if something is right before it there, it frames the bounds from the front, a little from the
-/// right and above.
+/// right and above. The bounds are those of boundsOverTime(): things stay in the picture while animation plays.
 Camera defaultCamera(const Scene& scene);
 
 /// Share of directions from `origin` in which the first thing met shows its front, of a few dozen spread evenly over the

@@ -40,6 +40,17 @@ int bodyMaterial(Scene& scene) {
     return static_cast<int>(scene.materials.size()) - 1;
 }
 
+bool wornOtherwise(const Scene& scene, uint32_t material) {
+    for (const Instance& instance : scene.instances) {
+        if (instance.light >= 0) continue;
+        if (instance.material >= 0 ? instance.material == static_cast<int>(material) : instance.mesh->material == material)
+            return true;
+        const std::vector<uint32_t>& ofTriangles = instance.mesh->triangleMaterial;
+        if (instance.material < 0 && std::find(ofTriangles.begin(), ofTriangles.end(), material) != ofTriangles.end()) return true;
+    }
+    return false;
+}
+
 bool sameShape(const Mesh& a, const Mesh& b) { return a.positions == b.positions; }
 
 }  // namespace
@@ -70,6 +81,15 @@ void addLightBodies(Scene& scene) {
         scene.instances.push_back({scene.lights[i].name, std::move(body), scene.lights[i].node, -1, material,
                                    static_cast<int>(i)});
     }
+}
+
+std::vector<bool> bodyMaterials(const Scene& scene) {
+    std::vector<bool> bodies(scene.materials.size(), false);
+    for (const Instance& instance : scene.instances)
+        if (instance.light >= 0 && instance.material >= 0) bodies[static_cast<size_t>(instance.material)] = true;
+    for (size_t i = 0; i < bodies.size(); ++i)
+        if (bodies[i]) bodies[i] = scene.materials[i].name == kBodyMaterial && !wornOtherwise(scene, static_cast<uint32_t>(i));
+    return bodies;
 }
 
 }  // namespace lumi

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <vector>
 
 #include "scene/scene.h"
 
@@ -13,5 +14,9 @@ std::shared_ptr<const Mesh> lightBody(const Light& light);
 /// wearing one black material named "light body". Bodies that stand already are made again if their light's size
 /// changed; the rest of the scene keeps its order.
 void addLightBodies(Scene& scene);
+
+/// For each material of the scene: is it the one that addLightBodies() made, worn by bodies alone? It says nothing of them:
+/// what a body shows is its light's.
+std::vector<bool> bodyMaterials(const Scene& scene);
 
 }  // namespace lumi

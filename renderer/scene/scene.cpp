@@ -4,10 +4,8 @@
 #include <cmath>
 #include <set>
 
-#include "scene/bounds.h"
-#include "scene/deform.h"
 #include "scene/material_textures.h"
-#include "scene/node_pose.h"
+#include "scene/pose_bounds.h"
 
 namespace lumi {
 namespace {
@@ -66,24 +64,9 @@ float Scene::duration() const {
 }
 
 Bounds3 Scene::restBounds() const {
-    const NodePose pose = poseNodes(*this, {});
     Bounds3 bounds;
     MeshBounds meshBounds;
-    for (const Instance& instance : instances) {
-        const Mesh& mesh = *instance.mesh;
-        const bool skinned = instance.skin >= 0 && !mesh.skin.empty();
-        Mat4 worldFromObject(1);
-        if (instance.node >= 0 && !skinned) worldFromObject = pose.worldFromNode[static_cast<size_t>(instance.node)];
-        if (mesh.morphTargets.empty() && !skinned) {
-            bounds.extend(transformedBounds(meshBounds.of(mesh), worldFromObject));
-            continue;
-        }
-        std::vector<float> weights;
-        if (instance.node >= 0) weights = pose.morphWeights[static_cast<size_t>(instance.node)];
-        std::vector<Mat4> joints;
-        if (skinned) joints = jointMatrices(skins[static_cast<size_t>(instance.skin)], pose);
-        bounds.extend(transformedBounds(boundsOf(deform(mesh, weights, joints).positions), worldFromObject));
-    }
+    eachBounds(*this, poseNodes(*this, {}), meshBounds, [&](const Bounds3& box) { bounds.extend(box); });
     return bounds;
 }
 

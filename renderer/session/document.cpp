@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "params/json.h"
 #include "reconstruct/catalog.h"
+#include "scene/light_body.h"
 #include "scene/reach.h"
 #include "session/document_fields.h"
 
@@ -33,6 +34,15 @@ std::vector<std::string> namesOf(const Things& things, const std::string& kind) 
     std::vector<std::string> names;
     for (const auto& thing : things) names.push_back(thing.name);
     return slugs(names, kind);
+}
+
+/// Empty for the material of light bodies: nothing shows it, so it has no parameters.
+std::vector<std::string> materialNames(const Scene& scene) {
+    std::vector<std::string> names = namesOf(scene.materials, "material");
+    const std::vector<bool> ofBodies = bodyMaterials(scene);
+    for (size_t i = 0; i < names.size(); ++i)
+        if (ofBodies[i]) names[i].clear();
+    return names;
 }
 
 std::vector<std::string> cameraNames(const Scene& scene) {
@@ -102,8 +112,7 @@ void RenderSettings::describe(ParameterVisitor& v) {
 }
 
 Document::Document(std::shared_ptr<const Scene> scene) : loaded_(scene), edited_(std::move(scene)) {
-    names_ = std::make_shared<Names>(Names{namesOf(loaded_->materials, "material"), namesOf(loaded_->lights, "light"),
-                                           cameraNames(*loaded_)});
+    names_ = std::make_shared<Names>(Names{materialNames(*loaded_), namesOf(loaded_->lights, "light"), cameraNames(*loaded_)});
     // At rest things may lie where no frame has them.
     const float radius = loaded_->restBounds().radius();
     sceneRadius_ = isInReach(radius) ? radius : kReach;

@@ -192,7 +192,7 @@ void DocumentFields::addScene(const Document& document, const std::string& filte
     }
     for (size_t i = 0; i < document.names_->materials.size(); ++i) {
         const std::string prefix = "material." + document.names_->materials[i] + ".";
-        if (!concerns(prefix, filter)) continue;
+        if (!concerns(prefix, filter) || document.names_->materials[i].empty()) continue;
         auto copy = std::make_shared<Material>(document.edited_->materials[i]);
         groups.push_back({prefix,
                           [copy, prefix](ParameterVisitor& v) {

@@ -1,4 +1,6 @@
 """list and info: tables for people, JSON for tools."""
+import json
+
 from lumiscope import SOURCE, CommandTest, main
 
 SCENES = ["cornell", "room", "atrium", "still-life", "parade"]
@@ -92,6 +94,33 @@ class Info(CommandTest):
         text = self.good("info", "cornell").out
         for part in ("Cornell box", "triangles", "lamp", "main", "bounds", "memory"):
             self.assertIn(part, text)
+
+    def test_scenes_and_variants_of_a_gltf(self):
+        material = lambda name: {"name": name}
+        gltf = {"asset": {"version": "2.0"}, "scene": 1, "scenes": [{"name": "Day"}, {"nodes": [0]}], "nodes": [{}],
+                "materials": [material("a")],
+                "extensions": {"KHR_materials_variants": {"variants": [{"name": "red"}, {"name": "green"}]}}}
+        (self.folder / "two.gltf").write_text(json.dumps(gltf))
+        info = self.good("info", "two.gltf", "--json").json
+        self.assertEqual(info["scenes"], [{"index": 0, "title": "Day", "shown": False}, {"index": 1, "title": "", "shown": True}])
+        self.assertEqual(info["variants"], [{"title": "red", "shown": False}, {"title": "green", "shown": False}])
+        text = self.good("info", "two.gltf", "--set", "scene.index=0", "--set", "scene.variant=green").out
+        self.assertIn('scenes      2: 0 "Day" (shown), 1; --set scene.index=N shows another', text)
+        self.assertIn('variants    2: "red", "green" (shown); --set scene.variant=NAME shows one', text)
+        info = self.good("info", "cornell", "--json").json
+        self.assertEqual((info["scenes"], info["variants"]), ([], []))
+        self.assertNotIn("variants", self.good("info", "cornell").out)
+
+    def test_bodies_of_lights_are_no_materials(self):
+        self.assertEqual([m["id"] for m in self.good("info", "cornell", "--json").json["materials"] if "body" in m["id"]], [])
+        self.refused(2, ["unknown parameter", "material.light-body.roughness"], "info", "cornell", "--quiet", "--set",
+                     "material.light-body.roughness=0.5")
+        # One that is worn is a material like any other.
+        (self.folder / "own.json").write_text(json.dumps({
+            "version": 1, "assets": {"ball": {"sphere": {}}}, "materials": {"light body": {}},
+            "instances": [{"name": "it", "asset": "ball", "material": "light body"}],
+            "lights": {"lamp": {"sphere": {"radius": 0.1}, "radiance": [5, 5, 5], "translate": [0, 2, 0]}}}))
+        self.good("info", "own.json", "--set", "material.light-body.roughness=0.5")
 
     def test_every_built_in_scene_loads_without_a_warning(self):
         for scene in self.good("list", "scenes", "--json").json:

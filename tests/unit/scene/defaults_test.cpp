@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "scene/pose_bounds.h"
 #include "scene/procedural/primitives.h"
 #include "scene/sky.h"
 
@@ -82,6 +83,64 @@ TEST(DefaultCamera, FramesWhatIsNotARoom) {
         EXPECT_LT(widest, 50);
         EXPECT_GT(widest, 35);
     }
+}
+
+/// Gives the first node keys at equal times.
+void animate(Scene& scene, AnimatedProperty property, int components, std::vector<float> values, float duration) {
+    AnimationChannel channel;
+    channel.node = 0;
+    channel.property = property;
+    channel.components = components;
+    const size_t keys = values.size() / static_cast<size_t>(components);
+    for (size_t i = 0; i < keys; ++i)
+        channel.times.push_back(duration * static_cast<float>(i) / static_cast<float>(keys - 1));
+    channel.values = std::move(values);
+    scene.animations.push_back({{channel}, duration, true});
+}
+
+/// Over its animation: the largest distance of any vertex from the picture's middle, of 50 there are.
+float widestOverTime(const Scene& scene, float duration) {
+    const CameraPose camera = poseCamera(defaultCamera(scene), {100, 100});
+    float widest = 0;
+    for (int i = 0; i <= 97; ++i) {
+        const NodePose pose = poseNodes(scene, duration * static_cast<float>(i) / 97);
+        for (const Vec3& p : scene.instances[0].mesh->positions) {
+            const Vec3 pixel = camera.project(transformPoint(pose.worldFromNode[0], p));
+            EXPECT_GT(pixel.z, 0);
+            widest = std::max({widest, std::abs(pixel.x - 50), std::abs(pixel.y - 50)});
+        }
+    }
+    return widest;
+}
+
+TEST(DefaultCamera, FramesWhatMovesAllTheTime) {
+    Scene goes = sceneOf(rectangleMesh(2, 2, Facing::Z));
+    animate(goes, AnimatedProperty::Translation, 3, {0, 0, 0, 3, 0, 0, 0, -2, 0}, 2);
+    Scene turns = sceneOf(rectangleMesh(4, 0.2f, Facing::Z));
+    animate(turns, AnimatedProperty::Rotation, 4, {0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, -1}, 3);
+    // The long animation's moments all find the short one, which is a sixteenth of it, where it began.
+    Scene twice = sceneOf(rectangleMesh(2, 2, Facing::Z));
+    animate(twice, AnimatedProperty::Translation, 3, {0, 0, 0, 3, 0, 0, 0, 0, 0}, 0.25f);
+    animate(twice, AnimatedProperty::Scale, 3, {1, 1, 1, 1, 1, 1}, 4);
+    const std::pair<const Scene*, float> all[] = {{&goes, 2.0f}, {&turns, 3.0f}, {&twice, 0.25f}};
+    for (const auto& [scene, duration] : all) {
+        EXPECT_LT(widestOverTime(*scene, duration), 50);
+        EXPECT_GT(widestOverTime(*scene, duration), 35);
+    }
+}
+
+TEST(DefaultCamera, LosesWhatGoesFarRatherThanMakingAllASpeck) {
+    Scene scene = sceneOf(rectangleMesh(2, 2, Facing::Z));
+    const Mesh floor = rectangleMesh(4, 4, Facing::Y);
+    scene.instances.push_back({"floor", std::make_shared<const Mesh>(floor), -1, -1, -1, -1});
+    const Camera still = defaultCamera(scene);
+    animate(scene, AnimatedProperty::Translation, 3, {0, 0, 0, 5000, 0, 0}, 1);
+    EXPECT_EQ(defaultCamera(scene).eye, still.eye);
+    // Nothing to be seen at first: what comes is the measure.
+    Scene grows = sceneOf(rectangleMesh(2, 2, Facing::Z));
+    animate(grows, AnimatedProperty::Scale, 3, {0, 0, 0, 0, 0, 0, 1, 1, 1}, 1);
+    EXPECT_GT(boundsOverTime(grows).radius(), 0.1f);
+    EXPECT_LT(glm::distance(defaultCamera(grows).eye, Vec3(0)), 10);
 }
 
 TEST(DefaultCamera, EnclosureCountsDirections) {

@@ -57,6 +57,27 @@ TEST_F(GltfAssets, SponzaAndKitchenAreWhole) {
     EXPECT_EQ(kitchen.cameras.size(), 1u);
 }
 
+TEST_F(GltfAssets, AnimationStaysInTheDefaultPicture) {
+    for (const char* file : {"AnimatedTriangle/glTF/AnimatedTriangle.gltf", "BoxAnimated/glTF/BoxAnimated.gltf",
+                             "SimpleSkin/glTF/SimpleSkin.gltf", "CesiumMan/CesiumMan.glb"}) {
+        const auto scene = std::make_shared<const Scene>(load(file));
+        const CameraPose camera = poseCamera(defaultCamera(*scene), {100, 100});
+        float widest = 0;
+        for (int i = 0; i <= 40; ++i) {
+            const auto posed = poseScene(scene, {scene->duration() * static_cast<float>(i) / 40});
+            for (size_t k = 0; k < posed->instances.size(); ++k) {
+                const PosedInstance& pose = posed->instances[k];
+                for (const Vec3& p : pose.deformed ? pose.deformed->positions : posed->mesh(static_cast<uint32_t>(k)).positions) {
+                    const Vec3 pixel = camera.project(transformPoint(pose.worldFromObject, p));
+                    widest = std::max({widest, std::abs(pixel.x - 50), std::abs(pixel.y - 50)});
+                }
+            }
+        }
+        EXPECT_LT(widest, 50) << file;
+        EXPECT_GT(widest, 25) << file;
+    }
+}
+
 /// Every file opens without a warning about damage, and its first moments can be posed.
 TEST_F(GltfAssets, AllOpen) {
     int opened = 0;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "gltf_support.h"
+#include "scene/gltf/choices.h"
 #include "scene/posed_scene.h"
 
 namespace lumi {
@@ -251,6 +252,25 @@ TEST(GltfFeatures, Variants) {
     EXPECT_EQ(file.load(log, options).instances[0].mesh->material, 1u);
     options.variant = "dusk";
     expectError(ErrorKind::Usage, [&] { file.load(log, options); }, {"day, night", "dusk"});
+}
+
+TEST(GltfFeatures, ChoicesAreReadWithoutTheRest) {
+    GltfBuilder file;
+    file.triangle();
+    file.json["scenes"] = {{{"nodes", {0}}, {"name", "day \u00e4"}}, {{"nodes", {0}}}};
+    file.json["scene"] = 1;
+    file.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "red"}}, {{"name", "green"}}};
+    file.json["nodes"][0]["scenes"] = {{{"name", "none of them"}}};
+    test::TemporaryFolder folder;
+    writeFileAtomically(folder / "a.glb", file.glb());
+    const gltf::Choices choices = gltf::readChoices(folder / "a.glb");
+    EXPECT_EQ(choices.scenes, (std::vector<std::string>{"day \u00e4", ""}));
+    EXPECT_EQ(choices.defaultScene, 1);
+    EXPECT_EQ(choices.variants, (std::vector<std::string>{"red", "green"}));
+    writeFileAtomically(folder / "b.gltf", std::string_view(R"({"scenes": 7, "scene": "a", "extensions": {"KHR_materials_variants": []}})"));
+    EXPECT_TRUE(gltf::readChoices(folder / "b.gltf").scenes.empty());
+    writeFileAtomically(folder / "c.gltf", std::string_view("{\"scenes\": [\n{]}"));
+    expectError(ErrorKind::BadInput, [&] { gltf::readChoices(folder / "c.gltf"); }, {"c.gltf:2:2", "not valid JSON"});
 }
 
 TEST(GltfFeatures, GpuInstancing) {

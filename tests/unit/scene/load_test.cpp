@@ -226,6 +226,31 @@ TEST(Assets, StayInTheirFolder) {
     }
 }
 
+// A scene file is its user's own: its paths go where they say. What other files name stays in their folder.
+TEST(Assets, OfASceneFileMayLieOutsideItsFolder) {
+    TemporaryFolder folder;
+    fs::create_directories(folder / "scenes");
+    fs::create_directories(folder / "shared meshes");
+    writeFileAtomically(folder / "shared meshes/shape.obj", std::string_view("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+    writeFileAtomically(folder / "sky.hdr", std::string_view(tinyHdr()));
+    const auto load = [&](const std::string& mesh) {
+        const std::string text = R"({"version": 1, "assets": {"it": {"obj": ")" + mesh +
+                                 R"("}}, "instances": [{"asset": "it"}], "environment": {"file": "../sky.hdr"}})";
+        writeFileAtomically(folder / "scenes/a.json", std::string_view(text));
+        MessageLog log;
+        return loadScene(folder / "scenes/a.json", log);
+    };
+    EXPECT_EQ(load("../shared meshes/shape.obj")->triangleCount(), 1);
+    EXPECT_EQ(load((folder / "shared meshes/shape.obj").string())->triangleCount(), 1) << "an absolute path";
+    // The glTF in the middle is read, but not followed out of its folder.
+    writeFileAtomically(folder / "shared meshes/climbs.gltf",
+                        std::string_view(R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "../sky.hdr", "byteLength": 4}]})"));
+    const std::string text = R"({"version": 1, "assets": {"it": {"gltf": "../shared meshes/climbs.gltf"}}, "instances": [{"asset": "it"}]})";
+    writeFileAtomically(folder / "scenes/b.json", std::string_view(text));
+    MessageLog log;
+    expectError(ErrorKind::BadInput, [&] { loadScene(folder / "scenes/b.json", log); }, {"asset \"it\"", "climbs.gltf", "leads out"});
+}
+
 // A title is no file.
 TEST(Assets, AreWhatFilesAreNamed) {
     TemporaryFolder folder;

@@ -1,0 +1,49 @@
+#include "scene/gltf/choices.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/files.h"
+#include "scene/gltf/glb.h"
+#include "scene/gltf/json_guard.h"
+
+namespace lumi::gltf {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The names of an array's objects.
+std::vector<std::string> namesIn(const Json& parent, const char* array) {
+    std::vector<std::string> names;
+    const auto found = parent.is_object() ? parent.find(array) : parent.end();
+    if (!parent.is_object() || found == parent.end() || !found->is_array()) return names;
+    for (const Json& entry : *found) {
+        const bool named = entry.is_object() && entry.contains("name") && entry["name"].is_string();
+        names.push_back(named ? entry["name"].get<std::string>() : std::string());
+    }
+    return names;
+}
+
+}  // namespace
+
+Choices readChoices(const std::filesystem::path& path) {
+    const std::vector<uint8_t> file = readFile(path);
+    const std::string name = path.filename().string();
+    const std::string_view json = isBinary(file) ? jsonChunk(file, name)
+                                                 : std::string_view(reinterpret_cast<const char*>(file.data()), file.size());
+    inspectJson(json, name);
+    // Accessors and nodes, most of a file, are dropped as they are read.
+    const Json tree = Json::parse(json.begin(), json.end(), [](int depth, Json::parse_event_t event, Json& parsed) {
+        return depth != 1 || event != Json::parse_event_t::key || parsed == "scene" || parsed == "scenes" || parsed == "extensions";
+    });
+    Choices choices;
+    if (!tree.is_object()) return choices;
+    choices.scenes = namesIn(tree, "scenes");
+    if (tree.contains("scene") && tree["scene"].is_number_integer())
+        choices.defaultScene = std::max(tree["scene"].get<int>(), 0);
+    if (tree.contains("extensions") && tree["extensions"].is_object() && tree["extensions"].contains("KHR_materials_variants"))
+        choices.variants = namesIn(tree["extensions"]["KHR_materials_variants"], "variants");
+    return choices;
+}
+
+}  // namespace lumi::gltf
