@@ -74,7 +74,7 @@ int64_t fillHoles(const Image& weights, Image& image, const std::stop_token& sto
 
 }  // namespace
 
-void ScatteredSettings::describe(ParameterVisitor& v) {
+void ScatteredSettings::describe(ParameterVisitor& v, bool onePerPixel) {
     v.choice("filter", filter,
              {.label = "Reconstruction filter",
               .options = {"gaussian", "box"},
@@ -88,10 +88,12 @@ void ScatteredSettings::describe(ParameterVisitor& v) {
                   .unit = "px",
                   .help = "Standard deviation of the Gaussian, which is cut off after 3x3 pixels (sec. 4.4 does not give it)"});
     });
-    v.toggle("tone-mapped", toneMapped,
-             {.label = "Filter tone-mapped",
-              .help = "Compress colours by c / (1 + luminance) before the filter and expand them after it (sec. 5 stores "
-                      "tone-mapped colours); off: the filter is linear"});
+    v.when(!onePerPixel || filter == Filter::Gaussian, [&] {
+        v.toggle("tone-mapped", toneMapped,
+                 {.label = "Filter tone-mapped",
+                  .help = "Compress colours by c / (1 + luminance) before the filter and expand them after it (sec. 5 stores "
+                          "tone-mapped colours); off: the filter is linear"});
+    });
 }
 
 float scatteredWeight(const ScatteredSettings& settings, Vec2 off, const Vec3& colour) {

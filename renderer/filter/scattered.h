@@ -16,7 +16,8 @@ struct ScatteredSettings {
     float sigma = 0.5f;      ///< pixels; the paper does not give it
     bool toneMapped = true;  ///< filter colours compressed by c / (1 + luminance), so that a bright sample does not outshine its neighbours
 
-    void describe(ParameterVisitor& v);
+    /// `onePerPixel`: each pixel has one sample, and a box leaves it as it is, tone-mapped or not.
+    void describe(ParameterVisitor& v, bool onePerPixel = false);
 };
 
 /// Samples of an image: those of pixel p are [first[p], first[p + 1]), and lie within it.

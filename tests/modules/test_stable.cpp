@@ -8,7 +8,6 @@
 #include <map>
 #include <set>
 
-#include "reconstruct/martin2002/martin2002.h"
 #include "reconstruct/stable/stable.h"
 #include "reconstruct/stable/verification.h"
 #include "reconstruct/supersampling/supersampling.h"
@@ -323,41 +322,6 @@ TEST(Supersampling, IsTheMeanOfItsRays) {
                 for (int c = 0; c < 3; ++c) ASSERT_NEAR(image.at(c, x, y), mean[c], 1e-5f * (1 + mean[c])) << spp;
             }
     }
-}
-
-TEST(Martin2002, AveragesThreeFrames) {
-    const Extent2 extent{30, 20};
-    Rig rig(extent);
-    Martin2002Module module;
-    module.resize(extent);
-    const auto posed = balls().pose();
-    std::vector<Image> single;
-    for (int frame = 0; frame < 5; ++frame) {
-        const Image image = rig.run(module, frame, posed, view(0.1f * static_cast<float>(frame)), {.camera = true});
-        single.push_back(module.tap("unfiltered"));
-        const int count = std::min(frame + 1, 3);
-        for (size_t i = 0; i < image.size(); ++i) {
-            float mean = 0;
-            for (int k = 0; k < count; ++k) mean += single[static_cast<size_t>(frame - k)].data()[i];
-            ASSERT_NEAR(image.data()[i], mean / static_cast<float>(count), 1e-5f) << frame;
-        }
-    }
-}
-
-// Of the samples that land in a pixel the closest stays; pixels that none lands in get one through their middle.
-TEST(Martin2002, KeepsOneSampleAPixel) {
-    const Extent2 extent{60, 40};
-    Rig rig(extent);
-    Martin2002Module module;
-    module.resize(extent);
-    const auto posed = balls().pose();
-    rig.run(module, 0, posed, view(), {});
-    for (size_t p = 0; p < 2400; ++p) ASSERT_EQ(module.tap("verdicts").data()[p], 0);
-    rig.run(module, 1, posed, view(0.07f), {.camera = true});
-    int counts[3] = {};
-    for (size_t p = 0; p < 2400; ++p) ++counts[static_cast<int>(module.tap("verdicts").data()[p])];
-    EXPECT_GT(counts[0], 10);
-    EXPECT_GT(counts[1], 1500);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cassert>
 #include <limits>
+#include <numeric>
 #include <set>
 
 #include "base/memory.h"
@@ -32,16 +33,24 @@ Martin2002Module::Martin2002Module()
 
 void Martin2002Module::describe(ParameterVisitor& v) {
     v.integer("frames", frames_, {.label = "Frames averaged", .min = 1, .max = kMostFrames, .unit = "frames", .help = "Length of the box filter over time"});
+    v.choice("average", average_,
+             {.label = "Averages along",
+              .options = {"screen", "scene"},
+              .help = "What the box filter over time follows: the pixel, or the sample on its way over the screen"});
+    scattered_.describe(v, true);
 }
 
 void Martin2002Module::resize(Extent2 extent) {
-    constexpr uint64_t kBytesAPixel = 3 * (sizeof(SampleLocation) + sizeof(Vec2) + 12) + (kMostFrames + 1) * 12 + 37;
-    checkMemory("the samples of martin2002", kBytesAPixel * static_cast<uint64_t>(extent.area()));
+    const auto colours = static_cast<uint64_t>(average_ == Average::Scene ? 3 * frames_ : 3 + frames_ + 2) * 12;
+    const uint64_t aPixel = 3 * (sizeof(SampleLocation) + sizeof(Vec2) + 12) + colours + 57;
+    checkMemory("the samples of martin2002", aPixel * static_cast<uint64_t>(extent.area()));
     extent_ = extent;
     const auto pixels = [](const PixelRun& run, std::vector<uint32_t>& list) {
         for (uint32_t p = run.pixel; p < run.pixel + run.count; ++p) list.push_back(p);
     };
     order_.make(extent, pixels);
+    first_.resize(static_cast<size_t>(extent.area()) + 1);
+    std::iota(first_.begin(), first_.end(), 0u);
     forget();
 }
 
@@ -81,6 +90,9 @@ void Martin2002Module::reproject(const FrameContext& context, const Kept& previo
     next.locations.resize(pixels), next.places.resize(pixels);
     next.names.resize(pixels), next.pathsDrawn.resize(pixels), next.ages.resize(pixels);
     inWorld_.resize(pixels), codes_.resize(pixels);
+    const size_t followed = average_ == Average::Scene ? std::min(static_cast<size_t>(frames_) - 1, previous.colours.size()) : 0;
+    next.colours.resize(1 + followed);
+    for (std::vector<Vec3>& colours : next.colours) colours.resize(pixels);
     parallelRanges(extent_.area(), kPixels, [&](int64_t begin, int64_t end) {
         for (auto p = static_cast<size_t>(begin); p < static_cast<size_t>(end); ++p) {
             codes_[p] = nearest_[p] == kNone ? kNew : kKept;
@@ -95,20 +107,21 @@ void Martin2002Module::reproject(const FrameContext& context, const Kept& previo
             next.locations[p] = previous.locations[i];
             next.places[p] = places_[i];
             next.names[p] = previous.names[i], next.pathsDrawn[p] = previous.pathsDrawn[i], next.ages[p] = previous.ages[i] + 1;
+            for (size_t k = 0; k < followed; ++k) next.colours[k + 1][p] = previous.colours[k][i];
             inWorld_[p] = placeInWorld(context.tracer, next.locations[p]);
         }
     });
 }
 
-void Martin2002Module::verifyAndShade(const FrameContext& context, Kept& next, Image& image) {
+void Martin2002Module::verifyAndShade(const FrameContext& context, Kept& next) {
     const std::span<const uint32_t> order = order_.items();
     constexpr int64_t kPaths = 1024;
     parallelRanges(static_cast<int64_t>(order.size()), kPaths, [&](int64_t begin, int64_t end) {
-        verifyAndShade(context, order.subspan(static_cast<size_t>(begin), static_cast<size_t>(end - begin)), next, image);
+        verifyAndShade(context, order.subspan(static_cast<size_t>(begin), static_cast<size_t>(end - begin)), next);
     }, context.stop);
 }
 
-void Martin2002Module::verifyAndShade(const FrameContext& context, std::span<const uint32_t> pixels, Kept& next, Image& image) {
+void Martin2002Module::verifyAndShade(const FrameContext& context, std::span<const uint32_t> pixels, Kept& next) {
     const SampleRays sampleRays(context.camera);
     const size_t count = pixels.size();
     std::vector<PathStart> starts(count);
@@ -138,18 +151,65 @@ void Martin2002Module::verifyAndShade(const FrameContext& context, std::span<con
     }
     std::vector<Vec3> radiance(count);
     context.tracer.continuePaths(starts, hits, context.sampling.path, context.sampling.seed, radiance, {}, context.stop);
-    for (size_t k = 0; k < count; ++k)
-        for (int c = 0; c < 3; ++c) image.plane(c).data[pixels[k]] = radiance[k][c];
+    for (size_t k = 0; k < count; ++k) next.colours.front()[pixels[k]] = radiance[k];
 }
 
-/// The box filter over time.
-void Martin2002Module::average(const std::vector<std::shared_ptr<const Image>>& images, Image& out) const {
+/// The image of one sample a pixel; false if stopped.
+bool Martin2002Module::reconstruct(const FrameContext& context, std::span<const Vec2> places, std::span<const Vec3> colours, Image& out) {
+    if (scattered_.filter == ScatteredSettings::Filter::Gaussian)
+        return reconstructScattered({extent_, first_, places, colours, {}}, scattered_, out, weights_, context.stop) >= 0;
+    out.reset(extent_, 3);
+    parallelRanges(extent_.area(), 1 << 14, [&](int64_t begin, int64_t end) {
+        for (int64_t p = begin; p < end; ++p)
+            for (int c = 0; c < 3; ++c) out.plane(c).data[p] = colours[static_cast<size_t>(p)][c];
+    });
+    return true;
+}
+
+/// The box filter over time along the samples: of each its colours in the last frames, of which it may have seen fewer.
+void Martin2002Module::averageSamples(const Kept& kept, std::vector<Vec3>& means) const {
+    means.resize(kept.locations.size());
+    parallelRanges(static_cast<int64_t>(means.size()), 1 << 14, [&](int64_t begin, int64_t end) {
+        for (auto p = static_cast<size_t>(begin); p < static_cast<size_t>(end); ++p) {
+            const size_t count = std::min(kept.colours.size(), static_cast<size_t>(kept.ages[p]) + 1);
+            Vec3 sum(0);
+            for (size_t k = 0; k < count; ++k) sum += kept.colours[k][p];
+            means[p] = sum / static_cast<float>(count);
+        }
+    });
+}
+
+/// The box filter over time on the screen.
+void Martin2002Module::averageImages(const std::vector<std::shared_ptr<const Image>>& images, Image& out) const {
     out.reset(extent_, 3);
     parallelRanges(static_cast<int64_t>(out.size()), 1 << 14, [&](int64_t begin, int64_t end) {
         for (const auto& image : images)
             for (int64_t i = begin; i < end; ++i) out.data()[i] += image->data()[i];
         for (int64_t i = begin; i < end; ++i) out.data()[i] /= static_cast<float>(images.size());
     });
+}
+
+/// Reconstruction and the box filter over time; false if stopped.
+bool Martin2002Module::filter(const FrameContext& context, const Kept* previous, Kept& next, Image& out) {
+    const bool onScreen = average_ == Average::Screen;
+    const auto image = std::make_shared<Image>();
+    {
+        const auto measured = context.timer.measure("reconstruction");
+        if ((onScreen || taps_.wants("unfiltered")) && !reconstruct(context, next.places, next.colours.front(), *image)) return false;
+    }
+    taps_.keep("unfiltered", *image);
+    const auto measured = context.timer.measure("temporal");
+    next.images.clear();
+    if (!onScreen) {
+        averageSamples(next, means_);
+        return reconstruct(context, next.places, means_, out);
+    }
+    next.images.push_back(image);
+    if (previous)
+        for (const auto& earlier : previous->images)
+            if (static_cast<int>(next.images.size()) < frames_) next.images.push_back(earlier);
+    averageImages(next.images, out);
+    return true;
 }
 
 RunResult Martin2002Module::run(const FrameContext& context, Image& out) {
@@ -162,19 +222,12 @@ RunResult Martin2002Module::run(const FrameContext& context, Image& out) {
         static const Kept none;
         reproject(context, step.previous ? *step.previous : none, step.next);
     }
-    auto image = std::make_shared<Image>(extent_, 3);
     {
         const auto measured = context.timer.measure("verification/shading");
-        verifyAndShade(context, step.next, *image);
+        verifyAndShade(context, step.next);
         if (context.stop.stop_requested()) return RunResult::Stopped;
     }
-    const auto measured = context.timer.measure("temporal");
-    step.next.images = {image};
-    if (step.previous)
-        for (const auto& earlier : step.previous->images)
-            if (static_cast<int>(step.next.images.size()) < frames_) step.next.images.push_back(earlier);
-    average(step.next.images, out);
-    taps_.keep("unfiltered", *image);
+    if (!filter(context, step.previous, step.next, out)) return RunResult::Stopped;
     const auto keep = [&](const char* name, const auto& values) {
         Image* tap = taps_.target(name);
         if (!tap) return;
@@ -200,6 +253,7 @@ size_t Martin2002Module::byteCount() const {
         return kept.bytes();
     });
     size_t bytes = samples + nearest_.size() * 8 + places_.size() * sizeof(Vec2) + inWorld_.size() * 13 + order_.bytes() + taps_.bytes();
+    bytes += means_.size() * sizeof(Vec3) + first_.size() * 4 + weights_.bytes();
     for (const Image* image : images) bytes += image->bytes();
     return bytes;
 }

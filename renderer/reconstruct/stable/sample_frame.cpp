@@ -1,5 +1,6 @@
 #include "reconstruct/stable/sample_frame.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/memory.h"
@@ -38,6 +39,12 @@ uint32_t beginPixels(SampleFrame& frame, SampleSet& next) {
     });
     next.first[pixels] = sum;
     return sum;
+}
+
+/// to[k] = from[sources[k]].
+template <class T>
+void copyFrom(const T* from, const uint32_t* sources, T* to, size_t count) {
+    for (size_t k = 0; k < count; ++k) to[k] = from[sources[k]];
 }
 
 }  // namespace
@@ -100,7 +107,7 @@ void SampleGatherer::gather(uint32_t pixel, uint32_t count) const {
         uint32_t next = begin;
         for (; next < end && (changes_[next].added | changes_[next].removed) == 0; ++next) words_[next] = subpixel::occupied(reprojectedWords_[next]);
         const uint32_t* source = sources_ + reprojectedFirst_[begin];
-        for (size_t i = first_[begin]; i < first_[next]; ++i) keep(*source++, i);
+        keep(source, first_[begin], first_[next] - first_[begin]);
         begin = next;
     }
 }
@@ -116,27 +123,40 @@ void SampleGatherer::gatherChanged(uint32_t pixel) const {
         const uint32_t bit = bits & (~bits + 1);
         const uint32_t* const here = occupied & bit ? source++ : nullptr;
         if (added & bit) addNew(pixel, std::countr_zero(bit), i++);
-        else if (all & bit) keep(*here, i++);
+        else if (all & bit) keep(here, i++, 1);
     }
 }
 
-/// A sample of the frame before.
-void SampleGatherer::keep(uint32_t source, size_t i) const {
-    locations_[i] = oldLocations_[source];
-    inWorld_[i] = oldInWorld_[source];
-    places_[i] = newPlaces_[source];
-    SampleNote note = oldNotes_[source];
-    note.age = static_cast<uint16_t>(note.age + (note.age < 0xFFFF));
-    if (oldDirect_) direct_[i] = oldDirect_[source];
-    else note.directCount = 0;
-    if (indirect_) indirect_[i] = oldIndirect_ ? oldIndirect_[source] : Vec3(0);
-    if (!oldIndirect_) note.indirectCount = 0;
-    notes_[i] = note;
-    if (motions_) motions_[i] = oldPlaces_[source] - newPlaces_[source];
-    const uint8_t flags = oldFlags_[source];
-    verdicts_[i] = flags & SampleSet::kOccluded ? Verdict::Occluded : Verdict::Visible;
-    flags_[i] = flags & ~SampleSet::kOccluded;
-    hidden_[i] = 0;
+/// Samples of the frame before, which follow each other in this one. A loop for each thing that is known of them: in one for
+/// all every pointer would be read again after each byte that is written, for it may lie anywhere.
+void SampleGatherer::keep(const uint32_t* sources, size_t begin, size_t count) const {
+    copyFrom(oldLocations_, sources, locations_ + begin, count);
+    copyFrom(oldInWorld_, sources, inWorld_ + begin, count);
+    copyFrom(newPlaces_, sources, places_ + begin, count);
+    copyFrom(oldFlags_, sources, flags_ + begin, count);
+    if (oldDirect_) copyFrom(oldDirect_, sources, direct_ + begin, count);
+    if (indirect_ && oldIndirect_) copyFrom(oldIndirect_, sources, indirect_ + begin, count);
+    else if (indirect_) std::fill_n(indirect_ + begin, count, Vec3(0));
+    keepNotes(sources, notes_ + begin, count);
+    if (motions_)
+        for (size_t k = 0; k < count; ++k) motions_[begin + k] = oldPlaces_[sources[k]] - newPlaces_[sources[k]];
+    uint8_t* const flags = flags_ + begin;
+    Verdict* const verdicts = verdicts_ + begin;
+    for (size_t k = 0; k < count; ++k) verdicts[k] = flags[k] & SampleSet::kOccluded ? Verdict::Occluded : Verdict::Visible;
+    for (size_t k = 0; k < count; ++k) flags[k] &= static_cast<uint8_t>(~SampleSet::kOccluded);
+    std::fill_n(hidden_ + begin, count, uint8_t{0});
+}
+
+void SampleGatherer::keepNotes(const uint32_t* sources, SampleNote* notes, size_t count) const {
+    const SampleNote* const old = oldNotes_;
+    const bool keepsDirect = oldDirect_, keepsIndirect = oldIndirect_;
+    for (size_t k = 0; k < count; ++k) {
+        SampleNote note = old[sources[k]];
+        note.age = static_cast<uint16_t>(note.age + (note.age < 0xFFFF));
+        if (!keepsDirect) note.directCount = 0;
+        if (!keepsIndirect) note.indirectCount = 0;
+        notes[k] = note;
+    }
 }
 
 /// A new sample of sub-pixel `sub`, still to be traced.

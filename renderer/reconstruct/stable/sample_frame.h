@@ -49,7 +49,8 @@ public:
 private:
     void gatherChanged(uint32_t pixel) const;
     void addNew(uint32_t pixel, int sub, size_t i) const;
-    void keep(uint32_t source, size_t i) const;
+    void keep(const uint32_t* sources, size_t begin, size_t count) const;
+    void keepNotes(const uint32_t* sources, SampleNote* notes, size_t count) const;
 
     const float jitter_;
     const uint32_t random_, width_;
