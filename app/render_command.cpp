@@ -53,6 +53,8 @@ public:
         rays_ += rate.rays, traceMs_ += rate.ms;
         nonFinite_ += frame.rays.nonFinite;
         for (const auto& [instance, rays] : frame.runRays) nonFinite_ += rays.nonFinite;
+        moduleBytes_ = frame.moduleBytes;
+        pixels_ = std::max<int64_t>(frame.camera.extent.area(), 1);
         for (const auto& [stage, ms] : frame.stagesMs) {
             if (!stages_.count(stage)) order_.push_back(stage);
             stages_[stage].push_back(ms);
@@ -67,7 +69,7 @@ public:
             const json result = {{"frames", frames_},        {"frames_kept", kept_}, {"stages_ms", stages},
                                  {"rays", rays_},            {"mrays_per_s", mraysPerSecond},
                                  {"files", outputs.files()}, {"peak_memory_bytes", peakResidentBytes()},
-                                 {"warnings", log.warnings()}};
+                                 {"module_bytes", moduleBytes_}, {"warnings", log.warnings()}};
             std::puts(result.dump(2).c_str());
         }
         if (machine.quiet) return;
@@ -79,6 +81,10 @@ public:
                                static_cast<double>(rays_) / 1e6, mraysPerSecond, seconds, formatBytes(peakResidentBytes()))
                        .c_str(),
                    stderr);
+        for (const auto& [instance, bytes] : moduleBytes_)
+            if (bytes > 0)
+                std::fputs(fmt::format("{} holds {}, {:.0f} bytes a pixel\n", instance, formatBytes(bytes),
+                                       static_cast<double>(bytes) / static_cast<double>(pixels_)).c_str(), stderr);
     }
 
     void keep(int64_t frames) { kept_ = frames; }
@@ -87,6 +93,8 @@ private:
     int64_t frames_ = 0, kept_ = 0;
     uint64_t rays_ = 0, nonFinite_ = 0;
     double traceMs_ = 0;
+    std::map<std::string, size_t> moduleBytes_;  ///< after the last frame, by instance
+    int64_t pixels_ = 1;
     std::map<std::string, std::vector<double>> stages_;
     std::vector<std::string> order_;
 };

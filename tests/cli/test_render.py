@@ -23,6 +23,13 @@ class Render(CommandTest):
         self.assertEqual(value["warnings"], [])
         self.assertEqual(value["files"], ["a.png"])
 
+    def test_tells_what_a_method_holds(self):
+        result = self.good("render", "cornell", *TINY, "--module", "stable", "--frames", 2, "--out", "%d.png", "--json")
+        held = result.json["module_bytes"]["stable"] / (24 * 16)
+        self.assertGreater(held, 99)  # a word, where its samples begin, and 73 bytes for each of about 1.25 samples
+        self.assertIn("stable holds", result.err)
+        self.assertIn(f", {held:.0f} bytes a pixel", result.err)
+
     def test_results_go_to_standard_output_and_the_rest_does_not(self):
         result = self.good("render", "cornell", *TINY, "--out", "a.png")
         self.assertEqual(result.out, "")
