@@ -158,7 +158,8 @@ void printTimes(const Study& study, const StudyOutcome& outcome) {
         TextTable table;
         std::vector<std::string> head{study.scenes[scene].name + ", ms a frame", "spp", "frame", "trace"};
         head.insert(head.end(), stages.begin(), stages.end());
-        head.insert(head.end(), {"Mrays a frame", "ns a ray"});
+        head.insert(head.end(), {"Mrays a frame", "ns a ray, whole frame"});
+        if (!study.tracingStages.empty()) head.push_back("ns a ray, tracing alone");
         table.add(std::move(head));
         for (const StudyMeanTime& time : outcome.times.methods) {
             if (time.scene != scene) continue;
@@ -169,6 +170,7 @@ void printTimes(const Study& study, const StudyOutcome& outcome) {
             }
             row.push_back(fmt::format("{:.3f}", time.raysPerFrame.mean * 1e-6));
             row.push_back(shown(time.nsPerRay));
+            if (!study.tracingStages.empty()) row.push_back(shown(time.tracingNsPerRay));
             table.add(std::move(row));
         }
         if (table.empty()) continue;

@@ -175,7 +175,9 @@ Rows timeRows(const Study& study, const StudyPlan& plan, const StudyTimes& times
             if (time.scene == scene) stages.insert(stage);
     Rows rows{"times-" + sceneFile(study, scene), "Times, " + study.scenes[scene].name, "", "lrrr", "Method & spp & ms / frame & trace", {}};
     for (const std::string& stage : stages) rows.columns += "r", rows.head += " & " + escapedLatex(stage);
-    rows.columns += "rr", rows.head += " & Mrays / frame & ns / ray";
+    const bool tracing = !study.tracingStages.empty();
+    rows.columns += tracing ? "rrr" : "rr", rows.head += " & Mrays / frame & ns / ray, whole frame";
+    if (tracing) rows.head += " & ns / ray, tracing alone";
     rows.caption = fmt::format("{}: medians of a frame's phases on {}, in milliseconds. Times are of one machine.", escapedLatex(study.title), sceneTitle(study, scene));
     for (const StudyMeanTime& time : times.methods) {
         if (time.scene != scene) continue;
@@ -183,6 +185,7 @@ Rows timeRows(const Study& study, const StudyPlan& plan, const StudyTimes& times
         for (const std::string& stage : stages) cells.push_back(time.stagesMs.contains(stage) ? cell(time.stagesMs.at(stage)) : "--");
         cells.push_back(fmt::format("{:.3f}", time.raysPerFrame.mean * 1e-6));
         cells.push_back(time.nsPerRay.count ? cell(time.nsPerRay) : "--");
+        if (tracing) cells.push_back(time.tracingNsPerRay.count ? cell(time.tracingNsPerRay) : "--");
         rows.lines.push_back(joinedCells(cells));
     }
     return rows;

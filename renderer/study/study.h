@@ -123,7 +123,9 @@ struct StudyCheck {
     bool timed() const;
 };
 
-/// Quantities of a check beside metrics and statistics: `frame_ms`, `run_ms` and `ns_per_ray`.
+/// Quantities of a check beside metrics and statistics: `frame_ms`, `run_ms`, `ns_per_ray` and, in studies that name the
+/// stages that trace, `tracing_ns_per_ray`.
+const std::vector<std::string>& timeQuantities();
 bool isTimeQuantity(const std::string& id);
 
 /// An inset strip: one picture with its crops marked, and each crop as the methods show it.
@@ -175,6 +177,7 @@ struct Study {
     std::vector<std::string> metrics;          ///< of images, as `list metrics` names them
     std::vector<std::string> temporalMetrics;  ///< of sequences
     std::vector<StudyStatistic> statistics;
+    std::vector<std::string> tracingStages;    ///< of methods, where they trace their own rays: what `tracing_ns_per_ray` counts
     MetricSettings metricSettings;             ///< for every metric, reference and figure
     std::optional<StudySweep> sweep;
     std::optional<StudyTuning> tuning;

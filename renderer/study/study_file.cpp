@@ -213,6 +213,7 @@ void readBody(const JsonTree& tree, const JsonValue& merged, Study& study) {
     readMetrics(tree, top.find("metrics"), study);
     study.metricSettings = readMetricSettings(tree, top.find("metric-settings"));
     study.statistics = readStatistics(tree, top.find("statistics"));
+    if (const JsonValue* stages = top.find("tracing-stages")) study.tracingStages = readTexts(tree, *stages, "tracing-stages");
     readTuning(tree, top.find("tuning"), study);
     readEntries(tree, top.need("entries"), study);
     checkStatisticTaps(tree, top.find("statistics"), study);
@@ -259,7 +260,12 @@ bool Study::measures(const std::string& metric) const {
     return std::count(metrics.begin(), metrics.end(), metric) + std::count(temporalMetrics.begin(), temporalMetrics.end(), metric) > 0 || statistic(metric);
 }
 
-bool isTimeQuantity(const std::string& id) { return id == "frame_ms" || id == "run_ms" || id == "ns_per_ray"; }
+const std::vector<std::string>& timeQuantities() {
+    static const std::vector<std::string> names{"frame_ms", "run_ms", "ns_per_ray", "tracing_ns_per_ray"};
+    return names;
+}
+
+bool isTimeQuantity(const std::string& id) { return std::count(timeQuantities().begin(), timeQuantities().end(), id) > 0; }
 
 bool StudyCheck::timed() const { return isTimeQuantity(metric) || isTimeQuantity(atEqual); }
 

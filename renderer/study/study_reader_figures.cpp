@@ -109,7 +109,8 @@ std::string readQuantity(const JsonTree& tree, const JsonValue& value, const Stu
     std::vector<std::string> known = study.metrics;
     known.insert(known.end(), study.temporalMetrics.begin(), study.temporalMetrics.end());
     for (const StudyStatistic& statistic : study.statistics) known.push_back(statistic.name);
-    for (const char* time : {"frame_ms", "run_ms", "ns_per_ray"}) known.emplace_back(time);
+    for (const std::string& time : timeQuantities())
+        if (time != "tracing_ns_per_ray" || !study.tracingStages.empty()) known.push_back(time);
     if (std::find(known.begin(), known.end(), id) == known.end()) refuseName(tree, value.at, "metric of the study", id, known);
     return id;
 }

@@ -110,7 +110,7 @@ Json checksSchema() {
     return listOf(closed({{"title", text("The claim in words.")},
                           {"scene", text("A scene of the study; by default each.")},
                           {"entry", text("An entry.")},
-                          {"metric", text("A metric or statistic of the study, or a time: frame_ms, run_ms, ns_per_ray.")},
+                          {"metric", text("A metric or statistic of the study, or a time: frame_ms, run_ms, ns_per_ray, or with \"tracing-stages\" tracing_ns_per_ray.")},
                           {"against", listOf(text("An entry's name."), "Entries whose value times the bound is the limit.")},
                           {"at-equal", text("A quantity like \"metric\": those it is held against are one curve, taken where this is the entry's.")},
                           {"at-most", bound},
@@ -161,6 +161,8 @@ Json bodySchema() {
                               "What images are compared with.");
     all["metrics"] = listOf(oneOfNames(metricIds(true), "As `lumiscope list metrics` names them."), "What is measured.");
     all["statistics"] = statisticsSchema();
+    all["tracing-stages"] = listOf(text("A stage of methods that trace their own rays."),
+                                   "Where they trace them: the time a ray is told of these alone, too.");
     const Json stops = {{"type", "number"}, {"minimum", -100}, {"maximum", 100}};
     Json exposures = listOf(stops, "Start and stop in EV, and how many; by default what the reference says.", 2);
     exposures["prefixItems"] = {stops, stops, whole(2, 64, "How many exposures.")};

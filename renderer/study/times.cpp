@@ -19,6 +19,15 @@ Interval timeInterval(const Study& study, const std::vector<const StudyTime*>& t
     return meanInterval(values, study.intervals.level);
 }
 
+/// Of trace and `stages` over all rays; NaN for a method without them.
+double tracingNsPerRay(const StudyTime& time, const std::vector<std::string>& stages) {
+    double ms = time.traceMs;
+    bool any = ms > 0;
+    for (const auto& [stage, stageMs] : time.stagesMs)
+        if (std::count(stages.begin(), stages.end(), stage)) ms += stageMs, any = true;
+    return any && time.raysPerFrame > 0 ? 1e6 * ms / time.raysPerFrame : kNaN;
+}
+
 std::vector<StudyMeanTime> meanTimes(const Study& study, const StudyRecords& records) {
     std::map<std::tuple<size_t, int, size_t>, std::vector<const StudyTime*>> groups;
     for (const StudyTime& time : records.times) groups[{time.scene, time.spp, time.method}].push_back(&time);
@@ -45,8 +54,10 @@ std::vector<StudyMeanTime> meanTimes(const Study& study, const StudyRecords& rec
             mean.frameMsBySeed.push_back(time ? time->frameMs() : kNaN);
             mean.runMsBySeed.push_back(time ? time->runMs : kNaN);
             mean.nsPerRayBySeed.push_back(time && time->raysPerFrame > 0 ? 1e6 * (time->traceMs + time->runMs) / time->raysPerFrame : kNaN);
+            mean.tracingNsPerRayBySeed.push_back(time ? tracingNsPerRay(*time, study.tracingStages) : kNaN);
         }
         mean.nsPerRay = meanInterval(mean.nsPerRayBySeed, study.intervals.level);
+        if (!study.tracingStages.empty()) mean.tracingNsPerRay = meanInterval(mean.tracingNsPerRayBySeed, study.intervals.level);
         means.push_back(std::move(mean));
     }
     return means;
@@ -141,6 +152,7 @@ void addStages(const Study& study, const StudyPlan& plan, StudyTimes& times) {
 }  // namespace
 
 const std::vector<double>& StudyMeanTime::bySeed(const std::string& quantity) const {
+    if (quantity == "tracing_ns_per_ray") return tracingNsPerRayBySeed;
     return quantity == "frame_ms" ? frameMsBySeed : quantity == "run_ms" ? runMsBySeed : nsPerRayBySeed;
 }
 

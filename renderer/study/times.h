@@ -15,7 +15,8 @@ struct StudyMeanTime {
     std::map<std::string, Interval> stagesMs;  ///< of run()
     std::vector<double> frameMsBySeed;         ///< in the study's order; NaN where the seed did not run
     std::vector<double> runMsBySeed, nsPerRayBySeed;  ///< the same; of run(), and of trace and run() over all their rays
-    Interval nsPerRay;
+    std::vector<double> tracingNsPerRayBySeed;        ///< the same, of trace and the study's tracing stages; NaN if the method has none
+    Interval nsPerRay, tracingNsPerRay;
 
     /// By a time quantity's id (isTimeQuantity()).
     const std::vector<double>& bySeed(const std::string& quantity) const;

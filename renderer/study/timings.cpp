@@ -18,6 +18,7 @@ Json rowJson(const Study& study, const StudyPlan& plan, const StudyMeanTime& tim
     row["run_ms"] = intervalJson(time.runMs);
     row["rays_per_frame"] = intervalJson(time.raysPerFrame);
     row["ns_per_ray"] = intervalJson(time.nsPerRay);
+    if (!study.tracingStages.empty()) row["tracing_ns_per_ray"] = intervalJson(time.tracingNsPerRay);
     row["stages_ms"] = Json::object();
     for (const auto& [stage, ms] : time.stagesMs) row["stages_ms"][stage] = intervalJson(ms);
     return row;

@@ -102,7 +102,8 @@ std::string definitionOf(const Study& study, const std::string& metric) {
 
 std::string titleOf(const Study& study, const std::string& metric) {
     if (const StudyStatistic* statistic = study.statistic(metric)) return statistic->title;
-    if (isTimeQuantity(metric)) return metric == "frame_ms" ? "ms a frame" : metric == "run_ms" ? "ms of the method" : "ns a ray";
+    if (metric == "tracing_ns_per_ray") return "ns a ray, tracing alone";
+    if (isTimeQuantity(metric)) return metric == "frame_ms" ? "ms a frame" : metric == "run_ms" ? "ms of the method" : "ns a ray, whole frame";
     const TemporalMetric* temporal = findTemporalMetric(metric);
     return temporal ? temporal->title : findMetric(metric).title;
 }

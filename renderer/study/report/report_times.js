@@ -67,9 +67,9 @@ function timeBars(scene) {
 function timeTable(scene) {
   const own = times.rows.filter(r => r.scene === scene), stages = [...new Set(own.flatMap(r => Object.keys(r.stages_ms)))];
   return `<details><summary>Every stage, with intervals</summary><table><thead><tr><th></th><th>spp</th><th>frame</th><th>pose</th><th>trace</th><th>method</th>` +
-    stages.map(s => `<th>${escapeText(s)}</th>`).join("") + "<th>rays a frame</th><th>ns a ray</th></tr></thead><tbody>" +
+    stages.map(s => `<th>${escapeText(s)}</th>`).join("") + `<th>rays a frame</th><th>ns a ray, whole frame</th>${own.some(r => r.tracing_ns_per_ray) ? "<th>ns a ray, tracing alone</th>" : ""}</tr></thead><tbody>` +
     own.map(r => `<tr>${entryCell(r.entry)}<td>${r.spp}</td>` + [r.frame_ms, r.pose_ms, r.trace_ms, r.run_ms, ...stages.map(s => r.stages_ms[s])].map(t => `<td>${t ? interval(t) : "–"}</td>`).join("") +
-      `<td>${Math.round(r.rays_per_frame.mean).toLocaleString("en")}</td><td>${r.ns_per_ray.count ? interval(r.ns_per_ray) : "–"}</td></tr>`).join("") + "</tbody></table></details>";
+      `<td>${Math.round(r.rays_per_frame.mean).toLocaleString("en")}</td>${[r.ns_per_ray, r.tracing_ns_per_ray].map(t => t ? `<td>${t.count ? interval(t) : "–"}</td>` : "").join("")}</tr>`).join("") + "</tbody></table></details>";
 }
 
 /** A table for each pair and scene: what the other reaches in the method's time, and when it reaches its value. */

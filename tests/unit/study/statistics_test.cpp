@@ -99,6 +99,12 @@ TEST(Statistics, ClaimsAtEqualTimeTakeTheOthersAsOneCurve) {
     EXPECT_EQ(timed.claim("m", "frame_ms", {"o1", "o2"}, "mse", 1)[0].verdict, Verdict::Unknown) << "far out of the curve";
     EXPECT_EQ(timed.claim("o1", "ns_per_ray", {"m"}, "", 0.9)[0].verdict, Verdict::Holds);
     EXPECT_EQ(timed.claim("m", "ns_per_ray", {"o1"}, "", 1)[0].verdict, Verdict::Fails);
+    // Of a ray's 11 to 13 ns half is tracing, where the other's are all.
+    for (StudyTime& time : timed.records.times) time.stagesMs = {{"shading", time.runMs / (time.method == 0 ? 2 : 1)}, {"rest", 1}};
+    EXPECT_EQ(timed.claim("m", "tracing_ns_per_ray", {"o1"}, "", 1)[0].verdict, Verdict::Unknown) << "no stage is named";
+    timed.study.tracingStages = {"shading"};
+    EXPECT_EQ(timed.claim("m", "tracing_ns_per_ray", {"o1"}, "", 0.7)[0].verdict, Verdict::Holds);
+    EXPECT_EQ(timed.claim("m", "tracing_ns_per_ray", {"o1"}, "", 0.5)[0].verdict, Verdict::Fails);
     StudyCheck here = timed.study.checks[0];
     here.scene = "room";
     timed.study.checks = {here};
