@@ -10,6 +10,7 @@ namespace lumi {
 class AntialiasingPass {
 public:
     explicit AntialiasingPass(bool enabled) : enabled_(enabled) {}
+    bool enabled() const { return enabled_; }
     SignalSet reads() const { return enabled_ ? taaSignals() : SignalSet{}; }
     void describe(ParameterVisitor& v);
     void forget() { history_.clear(); }

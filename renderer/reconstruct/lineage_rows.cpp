@@ -43,7 +43,8 @@ void forWindow(Extent2 extent, Pixel p, int step, Body body) {
 void addHistoryRows(Lineage& lineage, const Signals& signals, const TemporalHistory* previous, const TemporalSettings& settings,
                     const std::string& stage, const Image* loss) {
     const Pixel p = lineage.pixel;
-    if (!previous) {
+    // A method that kept no history in the frame before left its record empty.
+    if (!previous || previous->length.extent() != signals.extent()) {
         lineage.rows.push_back({stage, p, 1, "this frame's sample; there is no frame before"});
         return;
     }

@@ -9,7 +9,8 @@ namespace lumi {
 /// Rows of a Lineage for the stages that several modules share. Parts are normalised, so that those of a stage sum to 1.
 
 /// The stage `history`, or what it is called: this frame's sample and the taps of the frame before, those that were refused
-/// with why. `previous` may be null: there is no frame before. `loss`: lambda, how much of the history is given up.
+/// with why. `previous` may be null or empty: there is no frame before,
+/// or none whose history was kept. `loss`: lambda, how much of the history is given up.
 void addHistoryRows(Lineage& lineage, const Signals& signals, const TemporalHistory* previous, const TemporalSettings& settings,
                     const std::string& stage = "history", const Image* loss = nullptr);
 

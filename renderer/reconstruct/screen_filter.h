@@ -17,6 +17,7 @@ public:
     std::span<const Tap> taps() const final { return taps_.declared(); }
     const Image& tap(const std::string& name) const final;
     Lineage lineage() const final { return lineage_; }
+    bool keepsHistory(const Changes& changes) const final { return (accumulates() || antialiasing_.enabled()) && !changes.cut; }
     size_t byteCount() const override;
 
 protected:
@@ -28,6 +29,8 @@ protected:
     /// From frame() to the scene-linear image. Writes the whole of step.next, or leaves it empty if the method keeps no
     /// history. Returns false if stopped.
     virtual bool filter(const FrameContext& context, const Step& step, Image& out) = 0;
+    /// Does filter() keep history, with the present parameters? That of the antialiasing pass is kept beside it.
+    virtual bool accumulates() const { return true; }
     /// The run is complete: a method with history of its own commits it.
     virtual void commit() {}
 

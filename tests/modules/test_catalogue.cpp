@@ -160,6 +160,54 @@ TEST_P(Catalogue, AStaticViewConverges) {
     EXPECT_NEAR(lastError, std::sqrt(1.0 / 12 / 64), 0.001);
 }
 
+std::vector<std::string> togglesOf(Module& module) {
+    std::vector<std::string> ids;
+    for (const ParameterInfo& info : listParameters([&](ParameterVisitor& v) { module.describe(v); }))
+        if (info.type == ParameterType::Toggle) ids.push_back(info.id);
+    return ids;
+}
+
+void flip(Module& module, const std::string& id) {
+    const Describe describe = [&](ParameterVisitor& v) { module.describe(v); };
+    for (const ParameterInfo& info : listParameters(describe))
+        if (info.id == id) setParameter(describe, id, !std::get<bool>(info.value));
+}
+
+// A stage that was off for a frame has no history to ask, and none to build on.
+TEST_P(Catalogue, SwitchesMayBeFlippedBetweenFramesWhileAPixelIsAskedAbout) {
+    const Extent2 extent{19, 13};
+    ModuleHarness harness(extent);
+    harness.inspected = Pixel{9, 6};
+    for (const std::string& id : togglesOf(*make(extent))) {
+        const auto module = make(extent);
+        for (FrameNumber frame = 0; frame < 6; ++frame) {
+            if (frame > 1) flip(*module, id);
+            EXPECT_EQ(countNonFinite(harness.image(*module, frame, harness.trace(frame))), 0) << id << ", frame " << frame;
+        }
+    }
+}
+
+// Where a method says that no history reaches a frame a replay begins there: with any two switches flipped the frame is that
+// of a fresh instance.
+TEST_P(Catalogue, WhereNoHistoryIsKeptAFreshInstanceGivesTheFrame) {
+    const Extent2 extent{19, 13};
+    ModuleHarness harness(extent);
+    const std::vector<std::string> toggles = togglesOf(*make(extent));
+    for (size_t i = 0; i < toggles.size(); ++i)
+        for (size_t j = i; j < toggles.size(); ++j) {
+            const auto used = make(extent), fresh = make(extent);
+            for (Module* module : {used.get(), fresh.get()}) {
+                flip(*module, toggles[i]);
+                if (j != i) flip(*module, toggles[j]);
+            }
+            if (used->keepsHistory({})) continue;
+            for (FrameNumber frame = 0; frame < 2; ++frame) harness.image(*used, frame, harness.trace(frame));
+            const Signals signals = harness.trace(2);
+            const Image a = harness.image(*used, 2, signals), b = harness.image(*fresh, 2, signals, {.cut = true});
+            EXPECT_EQ(digestOf(a, *used), digestOf(b, *fresh)) << toggles[i] << " and " << toggles[j];
+        }
+}
+
 TEST_P(Catalogue, TapsAreDeclaredAndWritten) {
     const Extent2 extent{16, 8};
     ModuleHarness harness(extent, 2);

@@ -23,10 +23,10 @@ public:
     AafModule();
     SignalSet reads() const override;
     void describe(ParameterVisitor&) override;
-    bool keepsHistory(const Changes& changes) const override { return temporal_ && !changes.cut; }
     size_t byteCount() const override;
 
 private:
+    bool accumulates() const override { return temporal_; }
     bool filter(const FrameContext&, const Step&, Image& out) override;
     bool integrate(const FrameContext&, const Step&);
     void chooseWidths(const Image& occlusion);

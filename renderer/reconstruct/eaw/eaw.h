@@ -14,12 +14,12 @@ public:
     EawModule();
     SignalSet reads() const override;
     void describe(ParameterVisitor&) override;
-    bool keepsHistory(const Changes& changes) const override { return input_.enabled() && !changes.cut; }
     size_t byteCount() const override;
 
     static constexpr int kMaxLevels = 7;
 
 private:
+    bool accumulates() const override { return input_.enabled(); }
     bool filter(const FrameContext&, const Step&, Image& out) override;
 
     AccumulatedInput input_;

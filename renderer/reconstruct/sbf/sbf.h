@@ -19,10 +19,10 @@ public:
     SbfModule();
     SignalSet reads() const override { return commonSignals() | input_.reads() | sureSignals(); }
     void describe(ParameterVisitor&) override;
-    bool keepsHistory(const Changes& changes) const override { return input_.enabled() && !changes.cut; }
     size_t byteCount() const override;
 
 private:
+    bool accumulates() const override { return input_.enabled(); }
     bool filter(const FrameContext&, const Step&, Image& out) override;
 
     AccumulatedInput input_;
