@@ -108,7 +108,7 @@ std::string commonDefinition(const Study& study, const StudyScene& scene, int sp
 std::string measureDefinition(const Study& study, const StudyPlan& plan, const StudyJob& job) {
     std::string text = commonDefinition(study, study.scenes[job.scene], job.spp) + fmt::format("seed {};measure ", job.seed);
     for (const int64_t frame : study.frames.measure) text += fmt::format("{},", frame);
-    text += fmt::format(";temporal {}..{};", study.frames.temporalBegin, study.frames.temporalEnd);
+    text += fmt::format(";temporal {}..{} from {};", study.frames.temporalBegin, study.frames.temporalEnd, study.frames.temporalMeanFrom);
     for (const std::string& metric : study.metrics) text += metric + ",";
     for (const std::string& metric : study.temporalMetrics) text += metric + ",";
     for (const StudyStatistic& one : study.statistics)

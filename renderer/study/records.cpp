@@ -33,7 +33,7 @@ size_t methodNamed(const StudyPlan& plan, const std::string& name) {
 }
 
 void addChoice(const StudyJob& job, const json& result, StudyRecords& records) {
-    StudyChoice choice{job.scene, job.entry, job.spp, texts(result.at("chosen")), {}};
+    StudyChoice choice{job.scene, job.entry, job.spp, texts(result.at("chosen")), {}, {}};
     for (const json& candidate : result.at("candidates"))
         choice.candidates.push_back({texts(candidate.at("values")), number(candidate.at("metric"))});
     records.choices.push_back(std::move(choice));

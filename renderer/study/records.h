@@ -54,6 +54,7 @@ struct StudyChoice {
         double metric = 0;
     };
     std::vector<Candidate> candidates;
+    std::vector<std::string> atEnds;  ///< parameters of which the first or the last value was chosen: the best may lie beyond it
 };
 
 /// Median wall-clock times of a method's frames in one job.

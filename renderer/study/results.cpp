@@ -161,7 +161,7 @@ Json tuningJson(const Study& study, const StudyRecords& records) {
             candidates.push_back({{"values", textsJson(candidate.values)}, {"metric", number(candidate.metric)}});
         list.push_back({{"scene", study.scenes[choice.scene].name}, {"entry", study.entries[choice.entry].name},
                         {"spp", choice.spp}, {"frame", study.tuning->frame}, {"metric", study.tuning->metric},
-                        {"chosen", textsJson(choice.values)}, {"candidates", std::move(candidates)}});
+                        {"chosen", textsJson(choice.values)}, {"at_end", choice.atEnds}, {"candidates", std::move(candidates)}});
     }
     return list;
 }

@@ -129,10 +129,11 @@ public:
     }
     json toJson(size_t method) const {
         json metrics = json::object();
+        const auto before = static_cast<size_t>(study_.frames.temporalMeanFrom - study_.frames.temporalBegin);
         for (const auto& [id, values] : values_[method]) {
             double sum = 0;
-            for (const double value : values) sum += value;
-            metrics[id] = {{"mean", sum / static_cast<double>(values.size())}, {"begin", study_.frames.temporalBegin}, {"frames", values}};
+            for (size_t i = before; i < values.size(); ++i) sum += values[i];
+            metrics[id] = {{"mean", sum / static_cast<double>(values.size() - before)}, {"begin", study_.frames.temporalBegin}, {"frames", values}};
         }
         if (!lags_.empty()) {
             const Lag lag = lags_[method].lag(step());
@@ -235,49 +236,6 @@ json runMeasureJob(const JobContext& context, const StudyJob& job, const std::fi
         for (size_t i = 0; i < job.methods.size(); ++i)
             result["sequences"].push_back({{"method", context.plan.methods[job.methods[i]].name}, {"metrics", sequence.toJson(i)}});
     times = measuredTimes.toJson(context, job);
-    return result;
-}
-
-json runTuneJob(const JobContext& context, const StudyJob& job) {
-    const Study& study = context.study;
-    const StudyEntry& entry = study.entries[job.entry];
-    const std::vector<std::vector<StudyValue>> candidates = combinations(entry.tune);
-    std::vector<RunningMethod> methods;
-    for (const std::vector<StudyValue>& candidate : candidates) {
-        RunningMethod method{fmt::format("{}@t{}", entry.module, methods.size()), {}};
-        for (const StudyValue& value : entry.set)
-            if (!isDocumentId(entry.module, value.id)) method.set.push_back(value);
-        method.set.insert(method.set.end(), candidate.begin(), candidate.end());
-        methods.push_back(std::move(method));
-    }
-    FrameRunner runner(context, job, methods);
-    std::optional<FrameOutput> frame;
-    const double all = static_cast<double>(study.tuning->frame - study.frames.begin + 1);
-    while (runner.next() <= study.tuning->frame) {
-        context.progress(static_cast<double>(runner.next() - study.frames.begin) / all, 0, "tuning " + entry.name);
-        frame = runner.advance({});
-    }
-    const auto reference = runner.reference([&](uint64_t samples, uint64_t target) {
-        context.progress(1, static_cast<double>(samples), fmt::format("reference of frame {}, {} of {} spp", study.tuning->frame, samples, target));
-    });
-    const Metric& metric = findMetric(study.tuning->metric);
-    json result = {{"candidates", json::array()}};
-    double best = std::numeric_limits<double>::quiet_NaN();
-    for (size_t i = 0; i < candidates.size(); ++i) {
-        ImagePair pair{*frame->results.at(methods[i].instance), reference->image, {}, runner.exposure(), study.metricSettings};
-        pair.prepare();
-        const double value = metric.measure(pair, false).value;
-        json values = json::object();
-        for (const StudyValue& chosen : candidates[i]) values[chosen.id] = chosen.text;
-        result["candidates"].push_back({{"values", values}, {"metric", value}});
-        // The first of equals stays, so that the choice never depends on chance; what has no value is never chosen.
-        if (std::isnan(value) || (!std::isnan(best) && !(metric.higherIsBetter ? value > best : value < best))) continue;
-        best = value;
-        result["chosen"] = values;
-    }
-    if (std::isnan(best))
-        throwBadInput({fmt::format("no combination of \"{}\" has a value of {} on frame {}", entry.name, study.tuning->metric, study.tuning->frame),
-                       study.path.string(), "images that can be measured", ""});
     return result;
 }
 

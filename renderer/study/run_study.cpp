@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -20,6 +21,7 @@
 #include "study/study_clock.h"
 #include "study/study_file.h"
 #include "study/study_folder.h"
+#include "study/tuning.h"
 
 namespace lumi {
 namespace fs = std::filesystem;
@@ -136,6 +138,17 @@ private:
             return value;
         };
         outcome_.records.add(plan_, plan_.jobs[index], read("job.json"), read("times.json"), folder, options_.out);
+        if (plan_.jobs[index].kind == StudyJob::Kind::Tune) warnOfEnds(outcome_.records.choices.back());
+    }
+
+    /// A sigma at the end of its values is not tuned: a wider range may serve the method better.
+    void warnOfEnds(StudyChoice& choice) {
+        const StudyEntry& entry = study_.entries[choice.entry];
+        choice.atEnds = tunedToAnEnd(entry.tune, choice.values);
+        for (const auto& [id, text] : choice.values)
+            if (std::count(choice.atEnds.begin(), choice.atEnds.end(), id))
+                log_.warning(fmt::format("tuning chose {} {} for \"{}\" on \"{}\", an end of its values: the best may lie beyond it", id, text, entry.name,
+                                         study_.scenes[choice.scene].name));
     }
 
     std::vector<StudyValue> tunedValues(size_t scene, size_t entry, int spp) const {

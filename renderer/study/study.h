@@ -36,7 +36,7 @@ struct StudyEntry {
     std::string name;    ///< in results; unique in a study
     std::string module;  ///< id of the catalogue
     std::vector<StudyValue> set;
-    std::vector<StudyAxis> tune;  ///< chosen for each scene among all combinations; see StudyTuning
+    std::vector<StudyAxis> tune;  ///< chosen for each scene; see StudyTuning
     std::vector<int> spp;         ///< instead of the study's; empty: those
     std::vector<std::pair<std::string, double>> known;  ///< statistics that are so by construction, by name
 };
@@ -52,6 +52,7 @@ struct StudyFrames {
     int64_t begin = 0, end = 1;
     std::vector<int64_t> measure{0};              ///< ascending, within the range
     int64_t temporalBegin = 0, temporalEnd = 0;   ///< frames whose difference to the one before is measured
+    int64_t temporalMeanFrom = 0;                 ///< of these, the first that counts for their mean
     bool still = false;                           ///< time stands at the first frame
     float fps = 0;                                ///< 0: the scene's
     std::optional<StudyStep> step;
@@ -67,7 +68,8 @@ struct StudySweep {
     std::vector<std::string> entries;  ///< swept; empty: all
 };
 
-/// How parameters under "tune" are chosen: the combination with the best metric on one frame that is not measured.
+/// How parameters under "tune" are chosen: by the best metric on one frame that is not measured, one parameter after the other
+/// until none moves (study/tuning.h).
 struct StudyTuning {
     int64_t frame = 0;
     std::string metric = "rmse";

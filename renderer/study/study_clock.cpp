@@ -7,6 +7,7 @@
 
 #include "study/run_job.h"
 #include "study/study_file.h"
+#include "study/tuning.h"
 
 namespace lumi {
 namespace {
@@ -21,9 +22,11 @@ StudyClock::StudyClock(const Study& study, const StudyPlan& plan) {
     for (const StudyJob& job : plan.jobs) {
         Job own;
         own.scene = job.scene;
-        const size_t methods = job.kind == StudyJob::Kind::Tune ? combinations(study.entries[job.entry].tune).size() : job.methods.size();
+        const bool tunes = job.kind == StudyJob::Kind::Tune;
+        const TuningEffort effort = tunes ? tuningEffort(study.entries[job.entry].tune) : TuningEffort{1, job.methods.size()};
+        const size_t methods = effort.places;
         const double frames = static_cast<double>(lastFrame(study, job.kind) - study.frames.begin + 1);
-        own.frames = frames * (job.spp + kMethodWork * static_cast<double>(methods));
+        own.frames = frames * (job.spp * static_cast<double>(effort.runs) + kMethodWork * static_cast<double>(methods));
         own.kind = fmt::format("{} {} {}", job.scene, job.spp, methods);
         // What a reference is of. The second job that compares with it finds it.
         std::string problem = std::to_string(job.scene);
@@ -31,7 +34,7 @@ StudyClock::StudyClock(const Study& study, const StudyPlan& plan) {
             own.kind += value.id + value.text;
             if (definesImage(value.id)) problem += value.id + value.text;
         }
-        if (job.kind == StudyJob::Kind::Tune) problem += " tune", own.kind += " tune " + study.entries[job.entry].name;
+        if (tunes) problem += " tune", own.kind += " tune " + study.entries[job.entry].name;
         else for (const size_t method : job.methods) own.kind += fmt::format(",{}", method);
         if (known.insert(problem).second) own.references = static_cast<double>(referencesOf(study, job)) * study.reference.spp;
         jobs_.push_back(std::move(own));

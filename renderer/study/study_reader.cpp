@@ -151,6 +151,9 @@ StudyFrames readFrames(const JsonTree& tree, const JsonValue* section) {
             refuseValue(tree, *temporal, "temporal",
                         fmt::format("frames after {} and up to {}", frames.begin, frames.end));
     }
+    frames.temporalMeanFrom = frames.temporalBegin;
+    if (const JsonValue* from = reader.find("mean-from"))
+        frames.temporalMeanFrom = readWholes(tree, *from, "mean-from", frames.temporalBegin, frames.temporalEnd - 1).front();
     if (const JsonValue* step = reader.find("step")) frames.step = readStep(tree, *step, frames);
     frames.still = reader.toggle("still").value_or(false);
     frames.fps = static_cast<float>(reader.number("fps", 0.1, 1000).value_or(0));

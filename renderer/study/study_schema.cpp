@@ -72,6 +72,7 @@ Json framesSchema() {
                    {"measure", {{"description", "Frames that are compared with a reference; by default the last."},
                                 {"anyOf", {wholes(0, last, "Frame numbers."), Json{{"const", "all"}}}}}},
                    {"temporal", pair},
+                   {"mean-from", whole(1, last, "Of the frames of \"temporal\" the first that counts for the mean; those before it are shown only.")},
                    {"step", closed({{"frame", whole(1, last, "The first frame that has the values.")}, {"set", reference("values")}},
                                    "From a frame on parameters of the scene have other values; \"lag\" measures how long the methods take to follow.",
                                    {"frame", "set"})},
@@ -175,7 +176,7 @@ Json bodySchema() {
     all["tuning"] = closed({{"frame", whole(0, 10'000'000, "A frame that is not measured.")},
                             {"metric", oneOfNames(metricIds(false), "What the best has best.")},
                             {"seed", whole(0, kReferenceSeed - 1, "Random numbers of the tuning frames.")}},
-                           "How values under an entry's \"tune\" are chosen, for each scene.", {"frame"});
+                           "How values under an entry's \"tune\" are chosen, for each scene: one parameter after the other, from the middle of their values, until none moves.", {"frame"});
     const Json others = {{"description", "The entry it is held against, or several that are one method at several costs."},
                          {"anyOf", {text("An entry's name."), listOf(text("An entry's name."), "Entries.")}}};
     all["pairs"] = listOf(closed({{"entry", text("An entry.")}, {"against", others}}, "A pair.", {"entry", "against"}),

@@ -81,7 +81,8 @@ void PathSettings::describe(ParameterVisitor& v) {
                   .min = 0,
                   .max = 0.5,
                   .help = "Sample n uses the least roughness times (n + 1)^-decay, so that the mean converges to the "
-                          "image without regularization; 0 keeps its strength.",
+                          "image without regularization. Frames of a stream are samples too, so that it fades there as well: 0 "
+                          "keeps its strength, which is what filters of a stream expect.",
                   .redo = Redo::Samples});
     });
     v.choice("sampler.kind", sampler,

@@ -25,7 +25,7 @@ struct PathSettings {
     bool multipleScattering = true;  ///< between the facets of rough reflecting surfaces [Kulla & Conty 2017]
     bool regularize = false;      ///< path-space regularization [Kaplanyan 2013]: widen lobes after a diffuse vertex
     float regularizeRoughness = 0.3f;  ///< least roughness of the first sample
-    float regularizeDecay = 1.0f / 6;  ///< of sample n: regularizeRoughness (n + 1)^-regularizeDecay; 0 stays
+    float regularizeDecay = 1.0f / 6;  ///< of sample n: regularizeRoughness (n + 1)^-regularizeDecay; 0 stays, as a stream of frames wants it
     SamplerKind sampler = SamplerKind::Sobol;
     int haltonLoop = 16;          ///< Halton: the sequence repeats after this many samples
 

@@ -30,7 +30,7 @@ void EawModule::describe(ParameterVisitor& v) {
     v.number("sigma-color", edges_.sigmaColour,
              {.label = "Sigma colour",
               .min = 0.01,
-              .max = 100,
+              .max = 1000,
               .scale = Scale::Log,
               .unit = "W/(m^2 sr)",
               .help = "sigma_rt at the first level, of demodulated illumination; it halves with each level"});

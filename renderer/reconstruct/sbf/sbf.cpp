@@ -27,7 +27,7 @@ void SbfModule::describe(ParameterVisitor& v) {
     v.integer("variance-radius", settings_.varianceRadius,
               {.label = "Variance radius", .min = 1, .max = 5, .unit = "px", .help = "Of the window that a pixel's variance is estimated in"});
     v.number("sigma-color", settings_.sigmaColour,
-             {.label = "Sigma colour", .min = 0.1, .max = 100, .scale = Scale::Log, .help = "sigma_r, in standard deviations of a pixel's colour"});
+             {.label = "Sigma colour", .min = 0.1, .max = 1000, .scale = Scale::Log, .help = "sigma_r, in standard deviations of a pixel's colour"});
     v.number("sigma-normal", settings_.sigmaNormal,
              {.label = "Sigma normal", .min = 0.01, .max = 10, .scale = Scale::Log, .help = "sigma_f of normals"});
     v.number("sigma-albedo", settings_.sigmaAlbedo,

@@ -38,7 +38,7 @@ function addLatex() {
 function addMethod() {
   const part = section("method", "How these numbers were made");
   if (results.tuning && results.tuning.length) part.add(`<h3>Tuned parameters</h3><table><thead><tr><th>scene</th><th class="text">entry</th><th>spp</th><th class="text">chosen on frame ${results.tuning[0].frame}, by ${results.tuning[0].metric}</th></tr></thead><tbody>` +
-    results.tuning.map(t => `<tr><td>${escapeText(t.scene)}</td><td class="text">${escapeText(t.entry)}</td><td>${t.spp}</td><td class="text">${Object.entries(t.chosen).map(([k, v]) => `${escapeText(k)} = ${escapeText(v)}`).join(", ")} <span class="pm">of ${t.candidates.length} combinations</span></td></tr>`).join("") + "</tbody></table>");
+    results.tuning.map(t => `<tr><td>${escapeText(t.scene)}</td><td class="text">${escapeText(t.entry)}</td><td>${t.spp}</td><td class="text">${Object.entries(t.chosen).map(([k, v]) => `${escapeText(k)} = ${escapeText(v)}`).join(", ")} <span class="pm">of ${t.candidates.length} combinations${t.at_end.length ? `; at the end of its values: ${escapeText(t.at_end.join(", "))}` : ""}</span></td></tr>`).join("") + "</tbody></table>");
   const ownMetrics = [...new Set(results.references.flatMap(r => Object.keys(r.own)))];
   const details = [...new Set(results.references.flatMap(r => Object.keys(r.details)))];
   const floors = [...new Set(results.references.flatMap(r => Object.keys(r.floor)))].filter(m => metrics[m]);

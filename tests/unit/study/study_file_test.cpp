@@ -57,6 +57,7 @@ TEST(StudyFile, EverythingIsRead) {
     EXPECT_EQ(study.scenes[1].set[0].id, "camera.select");
     EXPECT_EQ(study.frames.measure, (std::vector<int64_t>{40, 63}));
     EXPECT_EQ(study.frames.temporalBegin, 20);
+    EXPECT_EQ(study.frames.temporalMeanFrom, 20) << "all of them";
     EXPECT_EQ(study.entries[0].set[0].text, "true");
     EXPECT_EQ(study.entries[0].tune[0].values, (std::vector<std::string>{"2", "4"}));
     EXPECT_EQ(study.entries[1].spp, std::vector<int>{2});
@@ -197,10 +198,11 @@ TEST(StudyFile, CarriesAPapersTablesAndFigures) {
     EXPECT_EQ(table.entries[1].spp, (std::vector<int>{1, 2, 4}));
     EXPECT_TRUE(table.scenes[1].optional);
     EXPECT_EQ(table.checks.size(), 3u);
-    const Study flicker = parse(R"({"version": 1, "scenes": ["atrium"], "frames": {"range": [0, 60], "still": true, "temporal": [20, 60]},
+    const Study flicker = parse(R"({"version": 1, "scenes": ["atrium"], "frames": {"range": [0, 60], "still": true, "temporal": [1, 60], "mean-from": 20},
       "entries": [{"name": "svgf", "module": "svgf"}, {"name": "plain", "module": "svgf", "set": {"color-alpha": 1, "moments-alpha": 1}}],
       "checks": [{"entry": "svgf", "metric": "temporal", "against": ["plain"], "at-most": 0.2}], "metrics": ["temporal"]})");
-    EXPECT_EQ(flicker.frames.temporalBegin, 20);
+    EXPECT_EQ(flicker.frames.temporalBegin, 1);
+    EXPECT_EQ(flicker.frames.temporalMeanFrom, 20);
     EXPECT_TRUE(flicker.frames.still);
 }
 
