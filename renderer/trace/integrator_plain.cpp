@@ -1,4 +1,5 @@
 // Vertices on plain surfaces: collected while a batch is shaded, and then shaded together by kernels.
+#include <algorithm>
 #include <cmath>
 
 #include "math/hash.h"
@@ -55,11 +56,18 @@ void Integrator::placePlain(PathBatch& batch, int depth) const {
     const bool described = depth < needs_.vertexDepths, last = depth >= settings_.maxDepth;
     plainKernels().place(lanes);
     if (!last || described) {
-        for (int i = 0; i < lanes.count; ++i)
-            if (batch.taps[i].material->textures != 0)
-                findTexels(scene_.tables, lanes, i, !path(i).diffuseBefore, batch.taps[i]);
-        for (int i = 0; i < lanes.count; ++i)
+        const auto find = [&](int i) {
+            if (batch.taps[i].material->textures != 0) findTexels(scene_.tables, lanes, i, !path(i).diffuseBefore, batch.taps[i]);
+        };
+        const auto read = [&](int i) {
             if (batch.taps[i].material->textures != 0) readTexels(scene_.tables, batch.taps[i], lanes, i);
+        };
+        // Where a judge has put the hits, texels of neighbours share few lines of memory, which sends only so many at a time:
+        // the first are read meanwhile.
+        const int ahead = judge_ ? std::min(16, lanes.count) : lanes.count;
+        for (int i = 0; i < ahead; ++i) find(i);
+        for (int i = ahead; i < lanes.count; ++i) find(i), read(i - ahead);
+        for (int i = lanes.count - ahead; i < lanes.count; ++i) read(i);
         plainKernels().bend(lanes);
         if (settings_.regularize)
             for (int i = 0; i < lanes.count; ++i)
