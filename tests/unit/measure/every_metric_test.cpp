@@ -14,8 +14,8 @@ namespace lumi {
 namespace {
 
 /// How the number follows from the map: its mean over the pixels that count, their root mean square, minus the decibels
-/// of its mean, one minus its mean over the centres of windows, the share of edges (where it is above 0) below 0.63. That
-/// of MS-SSIM does not: a product of means is no mean of products.
+/// of its mean, one minus its mean over the centres of windows, the share of edges (where it is above 0) that round to 63
+/// percent at most. That of MS-SSIM does not: a product of means is no mean of products.
 enum class Map { Mean, RootOfMeanSquare, Decibels, Windows, Edges, PixelsAlone };
 
 struct Row {
@@ -204,7 +204,7 @@ double numberOf(const Row& row, const ImagePair& pair, const Image& map) {
             const double value = map.at(0, x, y);
             sum += value, squares += value * value, count += pair.counts(x, y);
             windows += pair.counts(x, y) && x >= 5 && y >= 5 && x < map.width() - 5 && y < map.height() - 5;
-            edges += value > 0, sharp += value > 0 && value <= 0.63f;
+            edges += value > 0, sharp += value > 0 && value < 0.635f;
         }
     switch (row.map) {
         case Map::Mean: return sum / count;

@@ -73,28 +73,48 @@ TEST(Masks, NothingThatCountsIsNoValue) {
     EXPECT_TRUE(std::isnan(measureMsSsim(pair, false).value));
 }
 
-/// Ramps over `width` pixels between two levels, edges at multiples of 32.
-Image ramps(int width) {
+/// Ramps over `width` pixels between two levels `contrast` apart, edges at multiples of 32.
+Image ramps(int width, float contrast = 200) {
     Image gray({128, 128}, 1);
     for (int y = 0; y < 128; ++y)
         for (int x = 0; x < 128; ++x) {
-            const float t = std::clamp((static_cast<float>(x % 32) - 16 + 0.5f * static_cast<float>(width)) / static_cast<float>(width), 0.0f, 1.0f);
-            gray.at(0, x, y) = x / 32 % 2 ? 220 - 200 * t : 20 + 200 * t;
+            const float t = std::clamp(static_cast<float>(x % 32 - 16 + width / 2) / static_cast<float>(width), 0.0f, 1.0f);
+            gray.at(0, x, y) = 20 + contrast * (x / 32 % 2 ? 1 - t : t);
         }
     return gray;
 }
 
 TEST(Cpbd, AnEdgeIsBlurredByItsWidthAgainstWhatIsNoticed) {
-    // Contrast above 50: a blur of 3 pixels is just noticeable; P = 1 - exp(-(w / 3)^3.6) is at most 0.63 up to that.
-    for (const int width : {2, 4, 6}) {
-        const Image gray = ramps(width);
-        Image map;
-        const double value = cpbd(std::as_const(gray).plane(0), nullptr, &map);
-        EXPECT_EQ(value, width <= 3 ? 1 : 0) << width;
-        float seen = 0;
-        for (size_t i = 0; i < map.size(); ++i) seen = std::max(seen, map.data()[i]);
-        EXPECT_NEAR(seen, 1 - std::exp(-std::pow(width / 3.0, 3.6)), 0.02) << width;
-    }
+    // A blur of 3 pixels is just noticeable, of 5 where contrast is at most 50: P = 1 - exp(-(w / 3)^3.6) is 1 - 1/e
+    // there, the most that counts as sharp.
+    for (const auto& [contrast, noticeable] : {std::pair(200.0f, 3), std::pair(48.0f, 5)})
+        for (const int width : {2, 3, 4, 5, 6}) {
+            const Image gray = ramps(width, contrast);
+            Image map;
+            const double value = cpbd(std::as_const(gray).plane(0), nullptr, &map);
+            EXPECT_EQ(value, width <= noticeable ? 1 : 0) << width << " of " << noticeable;
+            for (size_t i = 0; i < map.size(); ++i)
+                if (map.data()[i] > 0) {
+                    ASSERT_NEAR(map.data()[i], 1 - std::exp(-std::pow(width / double(noticeable), 3.6)), 1e-6);
+                }
+        }
+}
+
+TEST(Cpbd, EdgesOnASlantAndFaintOnesDoNotCount) {
+    Image gray({96, 96}, 1);
+    const auto edgesOf = [&](auto value) {
+        for (int y = 0; y < 96; ++y)
+            for (int x = 0; x < 96; ++x) gray.at(0, x, y) = value(x, y);
+        int64_t edges = 0;
+        cpbd(std::as_const(gray).plane(0), nullptr, nullptr, &edges);
+        return edges;
+    };
+    EXPECT_GT(edgesOf([](int x, int) { return x < 48 ? 20.0f : 220.0f; }), 90);
+    EXPECT_EQ(edgesOf([](int x, int y) { return x < y ? 20.0f : 220.0f; }), 0);  // 45 degrees
+    EXPECT_EQ(edgesOf([](int, int y) { return y < 48 ? 20.0f : 220.0f; }), 0);
+    // A step of 5 levels has a Sobel slope of 2.5 a pixel, one of 3 has 1.5.
+    EXPECT_GT(edgesOf([](int x, int) { return x < 48 ? 20.0f : 25.0f; }), 90);
+    EXPECT_EQ(edgesOf([](int x, int) { return x < 48 ? 20.0f : 23.0f; }), 0);
 }
 
 TEST(Cpbd, OnlyEdgesInTheMaskCount) {

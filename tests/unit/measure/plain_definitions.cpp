@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace lumi::plain {
 namespace {
@@ -183,22 +184,24 @@ Result cpbd(const ImagePair& pair) {
     Plane gray(w, h), strength(w, h);
     for (size_t i = 0; i < gray.values.size(); ++i)
         gray.values[i] = std::round(255 * (0.299 * rgb[0].values[i] + 0.587 * rgb[1].values[i] + 0.114 * rgb[2].values[i]));
-    double squares = 0;
     for (int y = 1; y < h - 1; ++y)
         for (int x = 1; x < w - 1; ++x) {
             double slope = 0;
             for (int j = -1; j <= 1; ++j) slope += (j == 0 ? 2 : 1) * (gray.at(x + 1, y + j) - gray.at(x - 1, y + j)) / 8;
-            squares += strength.at(x, y) = slope * slope;
+            strength.at(x, y) = slope * slope;
         }
-    const double threshold = 4 * squares / ((w - 2.0) * (h - 2));
     const auto isEdge = [&](int x, int y) {
-        return x > 0 && y > 0 && x < w - 1 && y < h - 1 && strength.at(x, y) > threshold &&
-               strength.at(x, y) > strength.at(x - 1, y) && strength.at(x, y) >= strength.at(x + 1, y);
+        if (x <= 0 || y <= 0 || x >= w - 1 || y >= h - 1) return false;
+        const double right = gray.at(x + 1, y) - gray.at(x - 1, y), down = gray.at(x, y + 1) - gray.at(x, y - 1);
+        const double degrees = right == 0 ? 0 : std::atan2(std::abs(down), std::abs(right)) * 180 / std::numbers::pi;
+        return strength.at(x, y) > 4 && strength.at(x, y) > strength.at(x - 1, y) && strength.at(x, y) >= strength.at(x + 1, y) &&
+               degrees < 22.5;
     };
     const auto reach = [&](int x, int y, int step, double sign) {
-        int length = 0;
-        for (; x + step >= 0 && x + step < w && sign * (gray.at(x + step, y) - gray.at(x, y)) > 0; x += step) ++length;
-        return length;
+        for (int k = 0;; ++k) {
+            const int near = x + step * (1 + k), far = near + step;
+            if (k == 100 || far < 0 || far >= w || sign * (gray.at(far, y) - gray.at(near, y)) <= 0) return k + 1;
+        }
     };
     double edges = 0, sharp = 0;
     Plane map(w, h);
@@ -213,11 +216,11 @@ Result cpbd(const ImagePair& pair) {
             for (int y = by; y < y1; ++y)
                 for (int x = bx; x < x1; ++x) {
                     if (!isEdge(x, y) || !pair.counts(x, y)) continue;
-                    const double rise = gray.at(x + 1, y) > gray.at(x - 1, y) ? 1 : -1;
+                    const double rise = gray.at(x + 1, y) >= gray.at(x - 1, y) ? 1 : -1;
                     const int width = reach(x, y, 1, rise) + reach(x, y, -1, -rise);
                     ++edges;
                     map.at(x, y) = 1 - std::exp(-std::pow(width / (high - low <= 50 ? 5.0 : 3.0), 3.6));
-                    sharp += map.at(x, y) <= 0.63;
+                    sharp += static_cast<int>(100 * map.at(x, y) + 0.5) <= 63;
                 }
         }
     return {edges > 0 ? sharp / edges : 0, map};
