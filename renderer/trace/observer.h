@@ -42,7 +42,7 @@ struct PathVertex {
     Vec3 wi{0};
     Vec3 weight{0};          ///< f cos / pdf of the continuation, roulette included
     float pdf = 0;           ///< of wi per solid angle over all lobes; 0 for delta lobes
-    Vec3 diffuseShare{0};    ///< part of `weight` that the diffuse lobe has; where lobes overlap it is neither 0 nor 1
+    Vec3 diffuseShare{0};    ///< fraction of `weight` in [0,1] that the diffuse lobe has; where lobes overlap neither 0 nor 1
 };
 
 /// What an observer wants; asked once a frame. What nobody asks for is not computed.

@@ -12,6 +12,7 @@
 #include "reconstruct/stable/reproject_samples.h"
 #include "reconstruct/stable/shading.h"
 #include "reconstruct/stable/stable_taps.h"
+#include "support/transport_scene.h"
 
 namespace lumi {
 namespace {
@@ -291,6 +292,49 @@ TEST(StableTaps, SubpixelsAreDrawnAsPixels) {
     EXPECT_GT(out.at(0, 5, 5), 0.5f);
     EXPECT_LT(out.at(2, 5, 5), 0.5f);
     EXPECT_LT(out.at(0, 6, 6), 0.1f);
+}
+
+// What samples average is what the signals call indirect diffuse light, where two lobes overlap, too.
+TEST(StableShading, AveragesWhatTheDiffuseLobeReflects) {
+    test::TinyScene tiny;
+    Material glossy;  // a diffuse base under a layer that reflects
+    glossy.baseColor = {0.6f, 0.3f, 0.2f};
+    glossy.roughness = 0.35f;
+    Material wall = test::lambert(0.7f);
+    tiny.add(test::floorMesh(8), glossy);
+    tiny.add(rectangleMesh(8, 8, Facing::Z), wall, test::translation({0, 2, -2}));
+    Light lamp;
+    lamp.type = LightType::Sphere;
+    lamp.radius = 0.3f;
+    lamp.radiance = Vec3(30);
+    tiny.addLight(lamp, test::translation({0, 3, 1}));
+    const auto posed = tiny.pose();
+    Tracer tracer;
+    tracer.bind(posed);
+    const Extent2 extent{64, 48};
+    const auto pixels = static_cast<size_t>(extent.area());
+    for (const bool roulette : {false, true}) {
+        PathSettings path = test::plainPaths(4);
+        path.roulette = roulette, path.rouletteDepth = 1;
+        const FrameSampling sampling = test::frameOf(test::lookFrom({0, 1.5f, 4}, {0, 0.3f, 0}), extent, 1, path,
+                                                     {Signal::Noisy, Signal::Albedo, Signal::IndirectDiffuse});
+        std::vector<Vec3> direct(pixels, Vec3(0)), share(pixels, Vec3(0));
+        SplitObserver split(direct, share);
+        PathObserver* const extra[] = {&split};
+        Signals signals;
+        ASSERT_TRUE(tracer.sample(sampling, signals, {}, extra));
+        double indirect = 0, bothLobes = 0;
+        for (size_t i = 0; i < pixels; ++i)
+            for (int c = 0; c < 3; ++c) {
+                const auto of = [&](Signal signal) { return signals[signal].plane(c).data[i]; };
+                const float expected = of(Signal::IndirectDiffuse) * of(Signal::Albedo);
+                ASSERT_NEAR((of(Signal::Noisy) - direct[i][c]) * share[i][c], expected, 1e-4f * (1 + of(Signal::Noisy))) << i << ' ' << c;
+                indirect += expected;
+                bothLobes += share[i][c] > 0.1f && share[i][c] < 0.9f;
+            }
+        EXPECT_GT(indirect, 100);
+        EXPECT_GT(bothLobes, 300);
+    }
 }
 
 }  // namespace

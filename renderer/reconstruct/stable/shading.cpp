@@ -26,8 +26,7 @@ void SplitObserver::bounce(const BounceBatch& batch) {
         Vec3 light = v.emitted;
         if (batch.depth == 0) {
             light += v.directDiffuse + v.directSpecular;
-            for (int c = 0; c < 3; ++c)
-                diffuseShare_[batch.slots[i]][c] = v.weight[c] > 0 ? std::clamp(v.diffuseShare[c] / v.weight[c], 0.0f, 1.0f) : 0;
+            diffuseShare_[batch.slots[i]] = v.diffuseShare;
         }
         direct_[batch.slots[i]] += v.throughput * light;
     }
