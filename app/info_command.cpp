@@ -203,14 +203,13 @@ int runInfo(const SceneOptions& options, bool check, const std::filesystem::path
     const auto scene = openScene(file, options, log, stop);
     pollStop();
     const Document document = makeDocument(scene, options, log);
-    const auto posed = poseScene(document.scene(), {0, 0, 0});
-    pollStop();
+    const auto posed = poseScene(document.scene(), {0, 0, 0}, nullptr, stop);
     Tracer tracer;
-    tracer.bind(posed);
+    tracer.bind(posed, stop);
     pollStop();
     const SceneMemory memory = memoryOf(*scene, tracer);
     std::vector<FrameCheck> checks;
-    if (check) checks = checkFrames(document, tracer, stop);
+    if (check) checks = checkFrames(document, tracer, stop, stop);
     if (!writeCameraPath.empty())
         writeFileAtomically(writeCameraPath,
                             formatCameraPath(cameraPathOf(*scene, document.cameraIndex(), document.render().fps),

@@ -116,7 +116,7 @@ private:
 std::shared_ptr<const Signals> traceLayers(const ReferenceSpec& spec, const Document& before, const SignalSet& wanted,
                                            uint64_t samples, std::stop_token stop) {
     Tracer tracer;
-    tracer.bind(poseScene(spec.scene, {spec.time, spec.time + spec.openSeconds, before.time()}));
+    tracer.bind(poseScene(spec.scene, {spec.time, spec.time + spec.openSeconds, before.time()}, nullptr, stop), stop);
     FrameSampling sampling;
     sampling.extent = spec.camera.extent;
     sampling.camera = spec.camera;

@@ -3,6 +3,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "scene/bounds.h"
 #include "scene/posed_shutter.h"
@@ -21,28 +22,40 @@ bool continues(const PosedScene* earlier, const Scene& scene, const ShutterTimes
     return earlier->scene->lights.size() == scene.lights.size();
 }
 
+/// What of the instance is otherwise at the other moments; it is made if need be, as it is at shutter open.
+PosedMotion& motionOf(PosedInstance& posed) {
+    if (!posed.motion)
+        posed.motion = std::make_shared<PosedMotion>(
+            PosedMotion{false, posed.worldFromObject, posed.worldFromObject, posed.deformed, posed.deformed, nullptr, nullptr});
+    return *posed.motion;
+}
+
 PosedInstance poseInstance(const Instance& instance, const PosedMoment& open, const PosedMoment& close, const PosedMoment& previous,
                            const PosedInstance* earlier) {
     PosedInstance posed;
     posed.worldFromObject = placementOf(instance, open);
-    posed.worldFromObjectClose = placementOf(instance, close);
-    posed.worldFromObjectPrevious = earlier ? earlier->worldFromObject : placementOf(instance, previous);
-    posed.normalFromObject = normalMatrix(posed.worldFromObject);
+    const Mat4 atClose = placementOf(instance, close);
+    const Mat4 before = earlier ? earlier->worldFromObject : placementOf(instance, previous);
+    std::shared_ptr<const DeformedVertices> deformedClose, deformedPrevious;
     if (deforms(instance)) {
         posed.deformed = earlier && earlier->deformed && deformsAlike(instance, open, previous)
                              ? earlier->deformed
                              : deformAt(instance, open);
-        posed.deformedClose = deformsAlike(instance, open, close) ? posed.deformed : deformAt(instance, close);
+        deformedClose = deformsAlike(instance, open, close) ? posed.deformed : deformAt(instance, close);
         if (earlier && earlier->deformed)
-            posed.deformedPrevious = earlier->deformed;
+            deformedPrevious = earlier->deformed;
         else
-            posed.deformedPrevious =
-                deformsAlike(instance, open, previous) ? posed.deformed : deformAt(instance, previous);
+            deformedPrevious = deformsAlike(instance, open, previous) ? posed.deformed : deformAt(instance, previous);
     }
-    posed.moves = posed.worldFromObject != posed.worldFromObjectClose ||
-                  posed.worldFromObject != posed.worldFromObjectPrevious ||
-                  posed.deformed != posed.deformedClose || posed.deformed != posed.deformedPrevious;
+    if (posed.worldFromObject != atClose || posed.worldFromObject != before || posed.deformed != deformedClose ||
+        posed.deformed != deformedPrevious)
+        posed.motion = std::make_shared<PosedMotion>(
+            PosedMotion{true, atClose, before, std::move(deformedClose), std::move(deformedPrevious), nullptr, nullptr});
     return posed;
+}
+
+void checkStop(const std::stop_token& stop) {
+    if (stop.stop_requested()) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
 }
 
 std::shared_ptr<const std::vector<Bounds3>> computeMeshBounds(const Scene& scene) {
@@ -84,28 +97,33 @@ void poseLights(const PosedMoment& open, const PosedMoment& previous, const Pose
 
 /// Motion vectors of a frame refer to the tracks of the frame before, whatever the shutter is now.
 void keepPreviousTracks(const PosedScene& before, PosedScene& posed) {
-    for (size_t i = 0; i < posed.instances.size(); ++i) posed.instances[i].previousTrack = before.instances[i].track;
+    for (size_t i = 0; i < posed.instances.size(); ++i)
+        if (before.instances[i].track()) motionOf(posed.instances[i]).previousTrack = before.instances[i].motion->track;
     for (size_t i = 0; i < posed.lights.size(); ++i) posed.lights[i].previousTrack = before.lights[i].track;
 }
 
 /// Fills in what moves while the shutter is open, in this frame and in the one before.
-void openShutter(const ShutterTimes& times, bool cut, const PosedScene* before, PosedScene& posed) {
+void openShutter(const ShutterTimes& times, bool cut, const PosedScene* before, PosedScene& posed, const std::stop_token& stop) {
     const Scene& scene = *posed.scene;
     const std::vector<Bounds3>& bounds = *posed.meshBounds;
-    const std::vector<PosedMoment> moments = shutterMoments(scene, times.open, times.close, bounds);
+    const std::vector<PosedMoment> moments = shutterMoments(scene, times.open, times.close, bounds, stop);
     std::vector<PosedMoment> earlier;
     if (!cut && !before)
-        earlier = shutterMoments(scene, times.previousOpen, times.previousOpen + times.close - times.open, bounds);
+        earlier = shutterMoments(scene, times.previousOpen, times.previousOpen + times.close - times.open, bounds, stop);
     parallelRanges(static_cast<int64_t>(posed.instances.size()), 16, [&](int64_t begin, int64_t end) {
         for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+            if (stop.stop_requested()) return;
             PosedInstance& pose = posed.instances[i];
-            pose.track = shutterTrack(scene.instances[i], moments, bounds[i], pose.deformed);
-            if (!earlier.empty())
-                pose.previousTrack = shutterTrack(scene.instances[i], earlier, bounds[i], pose.deformedPrevious);
-            if (cut) pose.previousTrack = pose.track;
-            pose.moves |= pose.track != nullptr;
+            std::shared_ptr<const ShutterTrack> track = shutterTrack(scene.instances[i], moments, bounds[i], pose.deformed), previous;
+            if (!earlier.empty()) previous = shutterTrack(scene.instances[i], earlier, bounds[i], pose.deformedPrevious());
+            if (cut) previous = track;
+            if (!track && !previous) continue;
+            PosedMotion& motion = motionOf(pose);
+            motion.moves |= track != nullptr;
+            motion.track = std::move(track), motion.previousTrack = std::move(previous);
         }
-    });
+    }, stop);
+    checkStop(stop);
     for (size_t i = 0; i < posed.lights.size(); ++i) {
         PosedLight& light = posed.lights[i];
         light.track = shutterFrames(scene.lights[i], moments);
@@ -124,15 +142,17 @@ size_t PosedScene::byteCount() const {
     };
     for (const PosedInstance& instance : instances) {
         if (instance.deformed) bytes += sizeOf(*instance.deformed);
+        if (instance.motion) bytes += sizeof(PosedMotion);
         // The first of a track's shapes is that of shutter open.
-        for (size_t i = 1; instance.track && i < instance.track->deformed.size(); ++i)
-            bytes += sizeOf(*instance.track->deformed[i]);
+        const ShutterTrack* track = instance.track();
+        for (size_t i = 1; track && i < track->deformed.size(); ++i) bytes += sizeOf(*track->deformed[i]);
     }
     return bytes;
 }
 
 std::shared_ptr<const PosedScene> poseScene(std::shared_ptr<const Scene> scene, ShutterTimes times,
-                                            const PosedScene* earlier) {
+                                            const PosedScene* earlier, std::stop_token stop) {
+    checkStop(stop);
     if (!continues(earlier, *scene, times)) earlier = nullptr;
     const bool animated = !scene->animations.empty();
     const PosedMoment open = poseMoment(*scene, times.open);
@@ -154,17 +174,19 @@ std::shared_ptr<const PosedScene> poseScene(std::shared_ptr<const Scene> scene, 
     const PosedScene* before = cut ? nullptr : earlier;
     parallelRanges(static_cast<int64_t>(bounds.size()), 16, [&](int64_t begin, int64_t end) {
         for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+            if (stop.stop_requested()) return;
             posed->instances[i] =
                 poseInstance(scene->instances[i], open, close, previous, before ? &before->instances[i] : nullptr);
             bounds[i] = worldBounds(posed->instances[i], (*posed->meshBounds)[i]);
         }
-    });
+    }, stop);
+    checkStop(stop);
     for (const Bounds3& b : bounds) posed->bounds.extend(b);
     for (const PosedInstance& instance : posed->instances)
-        posed->anythingMoves |= instance.worldFromObject != instance.worldFromObjectPrevious ||
-                                instance.deformed != instance.deformedPrevious;
+        posed->anythingMoves |= instance.worldFromObject != instance.worldFromObjectPrevious() ||
+                                instance.deformed != instance.deformedPrevious();
     poseLights(open, previous, before, *posed);
-    if (animated && times.close != times.open) openShutter(times, cut, before, *posed);
+    if (animated && times.close != times.open) openShutter(times, cut, before, *posed, stop);
     else if (before) keepPreviousTracks(*before, *posed);
     requireReach(*posed, bounds);
     return posed;

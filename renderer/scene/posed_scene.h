@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <stop_token>
 #include <vector>
 
 #include "scene/scene.h"
@@ -32,17 +33,32 @@ inline TrackPlace trackPlace(size_t count, float time) {
     return {first, at - static_cast<float>(first)};
 }
 
-/// One instance at the moments a frame needs.
-struct PosedInstance {
-    Mat4 worldFromObject{1};          ///< at shutter open
-    Mat4 worldFromObjectClose{1};     ///< at shutter close; equal to the former while the shutter is instantaneous
+/// What of an instance is otherwise than at shutter open. Most instances have none of it: see PosedInstance.
+struct PosedMotion {
+    bool moves = false;               ///< it differs at one of the three moments, or in between
+    Mat4 worldFromObjectClose{1};     ///< at shutter close; as at open while the shutter is instantaneous
     Mat4 worldFromObjectPrevious{1};  ///< at the previous frame's shutter open
-    Mat3 normalFromObject{1};         ///< normalMatrix(worldFromObject)
-    bool moves = false;               ///< any of the three differ
-    /// For meshes that deform; null otherwise. `previous` equals `deformed` (same pointer) on a cut.
-    std::shared_ptr<const DeformedVertices> deformed, deformedClose, deformedPrevious;
+    std::shared_ptr<const DeformedVertices> deformedClose, deformedPrevious;
     /// Between opening and closing, and the same of the previous frame; null where it stands still meanwhile.
     std::shared_ptr<const ShutterTrack> track, previousTrack;
+};
+
+/// One instance at the moments a frame needs. There may be millions: what only those that move have stands apart.
+struct PosedInstance {
+    Mat4 worldFromObject{1};  ///< at shutter open
+    /// For meshes that deform; null otherwise.
+    std::shared_ptr<const DeformedVertices> deformed;
+    std::shared_ptr<PosedMotion> motion;  ///< null: it is the same at all moments
+
+    bool moves() const { return motion && motion->moves; }
+    const Mat4& worldFromObjectClose() const { return motion ? motion->worldFromObjectClose : worldFromObject; }
+    const Mat4& worldFromObjectPrevious() const { return motion ? motion->worldFromObjectPrevious : worldFromObject; }
+    /// Equal to `deformed` (same pointer) where it has the same shape, the previous one on a cut too.
+    const std::shared_ptr<const DeformedVertices>& deformedClose() const { return motion ? motion->deformedClose : deformed; }
+    const std::shared_ptr<const DeformedVertices>& deformedPrevious() const { return motion ? motion->deformedPrevious : deformed; }
+    const ShutterTrack* track() const { return motion ? motion->track.get() : nullptr; }
+    const ShutterTrack* previousTrack() const { return motion ? motion->previousTrack.get() : nullptr; }
+    Mat3 normalFromObject() const { return normalMatrix(worldFromObject); }
 };
 
 struct PosedLight {
@@ -83,7 +99,8 @@ struct ShutterTimes {
 
 /// Evaluates node animation, skinning and morphing at the three moments, in parallel over instances.
 /// `earlier` (may be null) is the previous frame's posed scene; deformed vertices are shared where they fit.
+/// Throws Error(Interrupted) once stopped: it looks between instances and between moments of the shutter.
 std::shared_ptr<const PosedScene> poseScene(std::shared_ptr<const Scene> scene, ShutterTimes times,
-                                            const PosedScene* earlier = nullptr);
+                                            const PosedScene* earlier = nullptr, std::stop_token stop = {});
 
 }  // namespace lumi

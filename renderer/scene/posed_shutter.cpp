@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "scene/bounds.h"
 #include "scene/deform.h"
 
@@ -108,13 +109,14 @@ std::shared_ptr<const DeformedVertices> deformAt(const Instance& instance, const
 }
 
 std::vector<PosedMoment> shutterMoments(const Scene& scene, float open, float close,
-                                        std::span<const Bounds3> meshBounds) {
+                                        std::span<const Bounds3> meshBounds, const std::stop_token& stop) {
     std::vector<PosedMoment> moments{poseMoment(scene, open), poseMoment(scene, close)};
     while (moments.size() - 1 < kMostShutterSegments) {
         std::vector<PosedMoment> finer;
         const size_t segments = 2 * (moments.size() - 1);
         bool straight = true;
         for (size_t i = 0; i + 1 < moments.size(); ++i) {
+            if (stop.stop_requested()) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
             const auto part = static_cast<float>(2 * i + 1) / static_cast<float>(segments);
             PosedMoment middle = poseMoment(scene, glm::mix(open, close, part));
             for (size_t k = 0; k < scene.instances.size() && straight; ++k)

@@ -1,5 +1,6 @@
 #pragma once
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "scene/node_pose.h"
@@ -26,10 +27,10 @@ std::shared_ptr<const DeformedVertices> deformAt(const Instance& instance, const
 
 /// Moments from `open` to `close` seconds, a power of two and one more of them, so close to each other that between two of
 /// them everything goes straight, within a thousandth of its size; at most kMostShutterSegments and one more.
-/// `meshBounds` as in PosedScene.
+/// `meshBounds` as in PosedScene. Throws Error(Interrupted) once stopped.
 constexpr size_t kMostShutterSegments = 64;
 std::vector<PosedMoment> shutterMoments(const Scene& scene, float open, float close,
-                                        std::span<const Bounds3> meshBounds);
+                                        std::span<const Bounds3> meshBounds, const std::stop_token& stop);
 
 /// An instance's track over such moments, with as few of them as it needs; null if it stands still. `deformed` is its
 /// shape at the first of them, if it has one already.

@@ -51,15 +51,15 @@ Fault faultOf(const PosedInstance& pose, const Bounds3& meshBounds, const Bounds
         box.extend(boundsOf(shape->positions));
     };
     lookAtShape(pose.deformed.get());
-    if (pose.deformedClose != pose.deformed) lookAtShape(pose.deformedClose.get());
-    if (pose.track)
-        for (size_t i = 1; i < pose.track->deformed.size(); ++i) lookAtShape(pose.track->deformed[i].get());
+    if (pose.deformedClose() != pose.deformed) lookAtShape(pose.deformedClose().get());
+    if (pose.track())
+        for (size_t i = 1; i < pose.track()->deformed.size(); ++i) lookAtShape(pose.track()->deformed[i].get());
     fault.look(pose.worldFromObject);
     if (!atOpen.empty()) fault.look(atOpen.lower), fault.look(atOpen.upper);
-    if (pose.worldFromObjectClose != pose.worldFromObject || pose.deformedClose != pose.deformed)
-        lookAtPlaced(box, pose.worldFromObjectClose, fault);
-    if (pose.track)
-        for (const Mat4& m : pose.track->worldFromObject) lookAtPlaced(box, m, fault);
+    if (pose.worldFromObjectClose() != pose.worldFromObject || pose.deformedClose() != pose.deformed)
+        lookAtPlaced(box, pose.worldFromObjectClose(), fault);
+    if (pose.track())
+        for (const Mat4& m : pose.track()->worldFromObject) lookAtPlaced(box, m, fault);
     return fault;
 }
 

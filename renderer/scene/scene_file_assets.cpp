@@ -105,7 +105,8 @@ void buildGenerated(SceneFileContext& context, const std::vector<AssetSource*>& 
         } catch (const Error& error) {
             errors[i] = error;
         }
-    });
+    }, context.options.stop);
+    context.checkStop();
     for (size_t i = 0; i < generated.size(); ++i) {
         const AssetSource& source = *generated[i];
         if (errors[i]) {

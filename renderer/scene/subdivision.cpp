@@ -161,7 +161,7 @@ void findShared(const Far::TopologyLevel& level, const Factory& factory, int rat
 }
 
 SubdivisionSurface tessellateFaces(const SubdivisionCage& cage, const Far::TopologyRefiner& refiner, int rate,
-                                   bool shareTopology, const std::string& where) {
+                                   bool shareTopology, const std::string& where, const std::stop_token& stop) {
     Factory::Options options;
     options.SetDefaultFVarID(cage.uvs.empty() ? -1 : 0);
     options.EnableCaching(shareTopology);
@@ -186,7 +186,8 @@ SubdivisionSurface tessellateFaces(const SubdivisionCage& cage, const Far::Topol
         for (int64_t face = begin; face < end; ++face)
             if (spans[static_cast<size_t>(face)].vertexCount > 0)
                 tessellator.run(static_cast<int>(face), spans[static_cast<size_t>(face)], rows, out);
-    });
+    }, stop);
+    if (stop.stop_requested()) throw Error(ErrorKind::Interrupted, {"loading was stopped", where, "", ""});
     gatherRows(spans, rows, out);
     findShared(refiner.GetLevel(0), factory, rate, spans, out);
     return out;
@@ -238,14 +239,15 @@ Vec2 parentCoordinates(const RefinedCage& refined, uint32_t face, const Vec2& uv
 }
 
 /// Tessellates what can be handed to OpenSubdiv, or refines it until it can. `levels`: how often that was done already.
-SubdivisionSurface tessellateSafely(const SubdivisionCage& cage, int rate, int levels, const std::string& where) {
+SubdivisionSurface tessellateSafely(const SubdivisionCage& cage, int rate, int levels, const std::string& where,
+                                    const std::stop_token& stop) {
     const std::unique_ptr<Far::TopologyRefiner> refiner = makeRefiner(cage, where);
     const Far::TopologyLevel& level = refiner->GetLevel(0);
     const bool refine = levels == 0 ? hasFolds(level) || hasCrowdedCreases(level) : hasOpenFolds(level);
-    if (!refine) return tessellateFaces(cage, *refiner, rate, levels == 0, where);
+    if (!refine) return tessellateFaces(cage, *refiner, rate, levels == 0, where, stop);
 
     const RefinedCage refined = refineOnce(cage, where);
-    SubdivisionSurface out = tessellateSafely(refined.cage, (rate + 1) / 2, levels + 1, where);
+    SubdivisionSurface out = tessellateSafely(refined.cage, (rate + 1) / 2, levels + 1, where, stop);
     std::vector<bool> isDone(out.faceCoordinates.size(), false);
     for (size_t t = 0; t < out.triangleFace.size(); ++t) {
         for (int corner = 0; corner < 3; ++corner) {
@@ -262,10 +264,10 @@ SubdivisionSurface tessellateSafely(const SubdivisionCage& cage, int rate, int l
 
 }  // namespace
 
-SubdivisionSurface tessellate(const SubdivisionCage& cage, int rate, const std::string& where) {
+SubdivisionSurface tessellate(const SubdivisionCage& cage, int rate, const std::string& where, std::stop_token stop) {
     if (rate < 1 || rate > 64)
         throwBadInput({"the tessellation rate is out of range", where, "1 to 64", fmt::format("{}", rate)});
-    SubdivisionSurface out = tessellateSafely(cage, rate, 0, where);
+    SubdivisionSurface out = tessellateSafely(cage, rate, 0, where, stop);
     out.evaluate(cage.positions, out.mesh.positions, out.mesh.normals);
     return out;
 }

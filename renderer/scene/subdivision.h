@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -58,7 +59,8 @@ struct SubdivisionSurface {
 /// Tessellates the limit surface [OpenSubdiv 3.5, Bfr] with `rate` segments along every edge of the cage, on all
 /// threads; where OpenSubdiv needs the cage refined first (subdivision_folds.h), the rate goes up to an even number, or
 /// to a multiple of four. Throws Error(BadInput) headed by `where`: indices out of range, fewer than three corners,
-/// topology that cannot be refined, `rate` outside 1 to 64; Error(Resources) beyond the memory limit.
-SubdivisionSurface tessellate(const SubdivisionCage& cage, int rate, const std::string& where);
+/// topology that cannot be refined, `rate` outside 1 to 64; Error(Resources) beyond the memory limit; Error(Interrupted) once
+/// stopped, which is looked at between faces.
+SubdivisionSurface tessellate(const SubdivisionCage& cage, int rate, const std::string& where, std::stop_token stop = {});
 
 }  // namespace lumi

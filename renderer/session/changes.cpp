@@ -27,8 +27,8 @@ bool lightsMove(const PosedScene& posed) {
 
 bool objectsMove(const PosedScene& posed) {
     for (const PosedInstance& instance : posed.instances)
-        if (instance.worldFromObject != instance.worldFromObjectPrevious ||
-            instance.deformed != instance.deformedPrevious)
+        if (instance.worldFromObject != instance.worldFromObjectPrevious() ||
+            instance.deformed != instance.deformedPrevious())
             return true;
     return false;
 }

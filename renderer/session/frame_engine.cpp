@@ -47,7 +47,7 @@ bool FrameOutput::rests() const {
 FrameEngine::FrameEngine(MessageLog& log, OnModuleError onError) : log_(log), onError_(onError) {}
 FrameEngine::~FrameEngine() = default;
 
-std::optional<FrameOutput> FrameEngine::advance(const FrameRequest& request, std::stop_token stop) {
+std::optional<FrameOutput> FrameEngine::advance(const FrameRequest& request, std::stop_token stop, std::stop_token sceneStop) {
     Timer total;
     StageTimer timer;
     if (request.cut) before_.reset(), current_.reset();
@@ -69,7 +69,8 @@ std::optional<FrameOutput> FrameEngine::advance(const FrameRequest& request, std
         const auto measured = timer.measure("pose");
         const float previousTime = frame.changes.cut ? next.document.time() : previous->document.time();
         next.scene = pose(next.document, previousTime, previous ? previous->scene.get() : nullptr,
-                          {current_ ? current_->scene : nullptr, previewed_});
+                          {current_ ? current_->scene : nullptr, previewed_}, sceneStop);
+        if (!next.scene) return std::nullopt;
         previewed_ = nullptr;
     }
     if (!frame.changes.cut) frame.changes = differences(previous->state(), next.state(), *next.scene);
@@ -77,7 +78,7 @@ std::optional<FrameOutput> FrameEngine::advance(const FrameRequest& request, std
     // Without a cut `previous` holds the frame before; a copy, since it is overwritten below.
     const CameraPose previousCamera = frame.changes.cut ? next.camera : previous->camera;
     next.previousCameraTrack = frame.changes.cut ? next.cameraTrack : previous->cameraTrack;
-    if (!traceSignals(request, previousCamera, replaces, next, timer, stop)) return std::nullopt;
+    if (!traceSignals(request, previousCamera, replaces, next, timer, stop, sceneStop)) return std::nullopt;
     if (!runModules(request, next, previousCamera, frame, timer, stop)) return std::nullopt;
 
     adoptFreshInstances(next.instances, replaces);
@@ -172,18 +173,24 @@ FrameSampling FrameEngine::sampling(const FrameRequest& request, const Completed
     return sampling;
 }
 
-void FrameEngine::bind(const std::shared_ptr<const PosedScene>& posed) {
-    if (bound_ == posed) return;
+bool FrameEngine::bind(const std::shared_ptr<const PosedScene>& posed, const std::stop_token& stop) {
+    if (bound_ == posed) return true;
     bound_ = nullptr;  // if building fails, the next frame builds again
-    tracer_.bind(posed);
+    try {
+        tracer_.bind(posed, stop);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::Interrupted) throw;
+        return false;
+    }
     bound_ = posed;
+    return true;
 }
 
 bool FrameEngine::traceSignals(const FrameRequest& request, const CameraPose& previousCamera, bool replaces,
-                               Completed& next, StageTimer& timer, std::stop_token stop) {
+                               Completed& next, StageTimer& timer, std::stop_token stop, const std::stop_token& sceneStop) {
     if (bound_ != next.scene) {
         const auto measured = timer.measure("build");
-        bind(next.scene);
+        if (!bind(next.scene, sceneStop)) return false;
     }
     const FrameSampling asked = sampling(request, next, previousCamera);
     if (replaces && current_->scene == next.scene && current_->camera == next.camera &&

@@ -66,7 +66,8 @@ public:
 
     /// Draws a frame, or returns nothing if it was stopped; then the same number asked for again is as if it had not been. A frame with the number of the
     /// last completed one replaces it, seen from the same frame before; any other number but the next is a cut.
-    std::optional<FrameOutput> advance(const FrameRequest& request, std::stop_token stop = {});
+    /// Building the scene goes on when `stop` is requested, since the next frame needs it too, and ends with `sceneStop`.
+    std::optional<FrameOutput> advance(const FrameRequest& request, std::stop_token stop = {}, std::stop_token sceneStop = {});
 
     /// Can frame `frame`, the last completed one, be replaced? Not after a frame was stopped when one module had already
     /// run it, nor before the first frame after a cut that was asked for.
@@ -75,9 +76,10 @@ public:
     /// A coarse picture of what the document shows, for the while that it keeps changing: one sample a pixel at `extent`,
     /// the raw frame in every module's place. It leaves history and the last completed frame as they are. Nothing if
     /// it was stopped.
-    std::optional<FrameOutput> preview(const Document& document, Extent2 extent, std::stop_token stop = {});
+    std::optional<FrameOutput> preview(const Document& document, Extent2 extent, std::stop_token stop = {},
+                                       std::stop_token sceneStop = {});
     /// checkFrames() with this engine's tracer. Throws Error(Interrupted) when stopped.
-    std::vector<FrameCheck> checkSignals(const Document& document, std::stop_token stop);
+    std::vector<FrameCheck> checkSignals(const Document& document, std::stop_token stop, std::stop_token sceneStop = {});
 
     /// Rays of the frame being traced, for a progress bar; from any thread.
     TraceCounts tracedSoFar() const { return tracer_.counts(); }
@@ -116,9 +118,10 @@ private:
     SignalSet wantedSignals(const FrameRequest& request);
     Jitter effectiveJitter(const Document& document);
     FrameSampling sampling(const FrameRequest& request, const Completed& next, const CameraPose& previousCamera);
-    void bind(const std::shared_ptr<const PosedScene>& posed);
+    /// The document's scene for the tracer; false if it was stopped, and then nothing is bound.
+    bool bind(const std::shared_ptr<const PosedScene>& posed, const std::stop_token& stop);
     bool traceSignals(const FrameRequest& request, const CameraPose& previousCamera, bool replaces, Completed& next,
-                      StageTimer& timer, std::stop_token stop);
+                      StageTimer& timer, std::stop_token stop, const std::stop_token& sceneStop);
     bool runModules(const FrameRequest& request, const Completed& next, const CameraPose& previousCamera, FrameOutput& frame,
                     StageTimer& timer, std::stop_token stop);
     void advise(const std::string& name, const Module& module);

@@ -5,12 +5,13 @@
 
 namespace lumi {
 
-std::optional<FrameOutput> FrameEngine::preview(const Document& document, Extent2 extent, std::stop_token stop) {
+std::optional<FrameOutput> FrameEngine::preview(const Document& document, Extent2 extent, std::stop_token stop,
+                                                std::stop_token sceneStop) {
     Timer total;
     const float time = document.time();
     previewed_ = pose(document, time, current_ ? current_->scene.get() : nullptr,
-                      {current_ ? current_->scene : nullptr, previewed_});
-    bind(previewed_);
+                      {current_ ? current_->scene : nullptr, previewed_}, sceneStop);
+    if (!previewed_ || !bind(previewed_, sceneStop)) return std::nullopt;
     FrameSampling sampling;
     sampling.extent = extent;
     sampling.camera = sampling.previousCamera = poseCamera(document.camera(), extent);
@@ -38,9 +39,9 @@ std::optional<FrameOutput> FrameEngine::preview(const Document& document, Extent
     return frame;
 }
 
-std::vector<FrameCheck> FrameEngine::checkSignals(const Document& document, std::stop_token stop) {
+std::vector<FrameCheck> FrameEngine::checkSignals(const Document& document, std::stop_token stop, std::stop_token sceneStop) {
     bound_ = nullptr;  // the tracer is left bound to moments of the check
-    return checkFrames(document, tracer_, stop);
+    return checkFrames(document, tracer_, stop, sceneStop);
 }
 
 }  // namespace lumi

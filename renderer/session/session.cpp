@@ -23,6 +23,7 @@ Session::Impl::~Impl() {
         std::lock_guard lock(mutex);
         thread.request_stop();
         frameStop.request_stop();
+        sceneStop.request_stop();
         loadStop.request_stop();
     }
     wake.notify_all();

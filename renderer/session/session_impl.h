@@ -42,7 +42,7 @@ struct Session::Impl {
         uint64_t sceneNumber = 0; ///< of the scene that this work is about
         StateLog states;          ///< as it was then, for StepBack and SaveView
         Save save;
-        std::stop_token stop;
+        std::stop_token stop, sceneStop;
     };
     /// Where the present scene came from, to load it again.
     struct Origin {
@@ -114,6 +114,7 @@ struct Session::Impl {
     bool resting = false;    ///< the shown frame has converged
     bool frameFailed = false;  ///< drawing failed: wait for a change
     std::stop_source frameStop;
+    std::stop_source sceneStop;  ///< of building the scene, which changes let go on: another scene took its place
     bool working = false;  ///< something was taken up and is not done
     bool drawing = false;  ///< it is a frame that changes may abandon
     bool steppingBack = false;  ///< it is one of those that a step back runs

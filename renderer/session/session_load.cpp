@@ -123,6 +123,8 @@ void Session::Impl::load(const Origin& wanted, uint64_t generation, std::stop_to
     loading = {};
     if (!loaded || !failure.empty()) return;
     document = std::move(loaded);
+    sceneStop.request_stop();
+    sceneStop = std::stop_source();
     ++sceneNumber;
     ++environmentGeneration;
     origin = wanted;

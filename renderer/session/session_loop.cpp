@@ -127,6 +127,7 @@ Session::Impl::Work Session::Impl::takeWork() {
     frameStop = std::stop_source();
     Work work;
     work.stop = frameStop.get_token();
+    work.sceneStop = sceneStop.get_token();
     work.inspecting = inspecting;
     work.inspectedPixel = inspectedPixel;
     work.sceneNumber = sceneNumber;
@@ -189,7 +190,7 @@ void Session::Impl::drawFrame(const Work& work) {
             request.taps[instance] = all.taps;
         }
     Timer timer;
-    std::optional<FrameOutput> frame = engine.advance(request, work.stop);
+    std::optional<FrameOutput> frame = engine.advance(request, work.stop, work.sceneStop);
     if (frame) {
         complete(std::move(*frame), work);
         // The scene before, its loaders' scratch and its frames are gone: their memory goes back to the system.
@@ -211,7 +212,7 @@ void Session::Impl::drawFrame(const Work& work) {
 void Session::Impl::learnCost(double ms, double pixelSamples) { msPerSample = ms / std::max(pixelSamples, 1.0); }
 
 void Session::Impl::drawPreview(const Work& work) {
-    const std::optional<FrameOutput> coarse = engine.preview(*work.document, work.coarse, work.stop);
+    const std::optional<FrameOutput> coarse = engine.preview(*work.document, work.coarse, work.stop, work.sceneStop);
     if (!coarse) return;
     {
         std::lock_guard lock(mutex);
@@ -224,7 +225,7 @@ void Session::Impl::drawPreview(const Work& work) {
 void Session::Impl::checkSignals(const Work& work) {
     auto result = std::make_shared<SignalCheck>();
     try {
-        result->frames = engine.checkSignals(*work.document, work.stop);
+        result->frames = engine.checkSignals(*work.document, work.stop, work.sceneStop);
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::Interrupted) {
             std::lock_guard lock(mutex);

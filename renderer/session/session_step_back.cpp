@@ -21,7 +21,7 @@ void Session::Impl::stepBack(const Work& work) {
             replayed = static_cast<float>(i - start) / static_cast<float>(target - start + 1);
         }
         StateLog::Entry entry = before.entry(i);
-        std::optional<FrameOutput> next = engine.advance({*entry.document, entry.frame, i == start, {}, {}}, work.stop);
+        std::optional<FrameOutput> next = engine.advance({*entry.document, entry.frame, i == start, {}, {}}, work.stop, work.sceneStop);
         if (!next) break;
         next->changes.cut = entry.cut;  // the log keeps what was, not that a replay begins with a cut
         next->historyDropped = entry.historyDropped;

@@ -49,7 +49,7 @@ bool FrameCheck::holds() const {
     return std::all_of(findings.begin(), findings.end(), [](const ContractFinding& finding) { return finding.holds(); });
 }
 
-std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop_token stop) {
+std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop_token stop, std::stop_token sceneStop) {
     const Extent2 extent = smallExtent(document.render());
     const std::string size = fmt::format("{}x{}, {} samples a pixel", extent.width, extent.height, kSamples);
     const float before = document.time();
@@ -66,8 +66,8 @@ std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop
     const float open = document.camera().shutter / document.render().fps;
     sampling.shutterOpen = open > 0;
 
-    const auto first = poseScene(document.scene(), {before, before + open, before});
-    tracer.bind(first);
+    const auto first = poseScene(document.scene(), {before, before + open, before}, nullptr, sceneStop);
+    tracer.bind(first, sceneStop);
     std::vector<FrameCheck> checks{checkFrame(tracer, sampling, stop)};
     checks.back().what = size + ", jitter per pixel";
 
@@ -78,7 +78,7 @@ std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop
     sampling.previousCamera = sampling.camera;
     sampling.camera = poseCamera(orbited(document.camera(), kOrbitDeg), extent);
     sampling.jitter = Jitter::PerFrame;
-    tracer.bind(poseScene(document.scene(), {document.time(), document.time() + open, before}, first.get()));
+    tracer.bind(poseScene(document.scene(), {document.time(), document.time() + open, before}, first.get(), sceneStop), sceneStop);
     checks.push_back(checkFrame(tracer, sampling, stop));
     checks.back().what = size + ", jitter per frame, camera moved" + (animated ? ", one frame later" : "");
     return checks;

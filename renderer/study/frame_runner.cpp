@@ -116,7 +116,7 @@ FrameOutput FrameRunner::advance(const SignalSet& signals, const std::map<std::s
     problem_.setTime(time);
     FrameRequest request{document_, number, number == context_.study.frames.begin, signals, taps};
     for (const RunningMethod& method : methods_) request.instances.push_back(method.instance);
-    std::optional<FrameOutput> frame = engine_.advance(request, context_.stop);
+    std::optional<FrameOutput> frame = engine_.advance(request, context_.stop, context_.stop);
     if (!frame) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
     return std::move(*frame);
 }

@@ -34,8 +34,9 @@ void addInstance(const PosedScene& posed, uint32_t index, NextNumbers& next, std
         const Vec3 p = transformPoint(pose.worldFromObject, position);
         fmt::format_to(out, "v {} {} {}\n", p.x, p.y, p.z);
     }
+    const Mat3 normalFromObject = pose.normalFromObject();
     for (const Vec3& normal : mesh.normals) {
-        const Vec3 n = pose.normalFromObject * normal;
+        const Vec3 n = normalFromObject * normal;
         const float length = glm::length(n);
         const Vec3 unit = length > 0 ? n / length : Vec3(0, 1, 0);
         fmt::format_to(out, "vn {} {} {}\n", unit.x, unit.y, unit.z);

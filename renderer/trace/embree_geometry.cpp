@@ -14,6 +14,7 @@ RTCScene EmbreeScene::newScene() const {
     RTCScene scene = rtcNewScene(device_);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneProgressMonitorFunction(scene, &Monitor::goesOn, monitor_.get());
     return scene;
 }
 
@@ -40,18 +41,22 @@ RTCGeometry EmbreeScene::newTriangles(std::span<const Vec3* const> positions, si
     return geometry;
 }
 
-RTCGeometry EmbreeScene::newDeforming(const Plan& plan, const DeformedVertices& open) const {
+RTCGeometry EmbreeScene::newDeforming(const PosedScene& posed, uint32_t index, const Plan& plan) const {
+    const PosedInstance& pose = posed.instances[index];
     std::vector<const Vec3*> steps;
-    if (plan.track)
-        for (const auto& shape : plan.track->deformed) steps.push_back(shape->positions.data());
-    if (steps.empty()) steps.push_back(open.positions.data());
-    return newTriangles(steps, open.positions.size(), *plan.mesh, plan.inWorld ? &plan.worldFromObject : nullptr, plan.filtered);
+    // What is flat at present stands in the world as it is when the shutter opens.
+    if (const ShutterTrack* track = plan.inWorld ? nullptr : pose.track())
+        for (const auto& shape : track->deformed) steps.push_back(shape->positions.data());
+    if (steps.empty()) steps.push_back(pose.deformed->positions.data());
+    return newTriangles(steps, pose.deformed->positions.size(), posed.mesh(index), plan.inWorld ? &pose.worldFromObject : nullptr,
+                        plan.filtered);
 }
 
-RTCGeometry EmbreeScene::newBody(const Plan& plan) const {
-    std::span<const LightShape> shapes = plan.shutterShapes;
-    if (shapes.empty()) shapes = {&plan.shape, 1};
-    const bool rectangle = plan.shape.type == LightType::Rectangle, disk = plan.shape.type == LightType::Disk;
+RTCGeometry EmbreeScene::newBody(const PosedScene& posed, uint32_t index) const {
+    const Body body(posed, index);
+    std::span<const LightShape> shapes = body.shutterShapes;
+    if (shapes.empty()) shapes = {&body.shape, 1};
+    const bool rectangle = body.shape.type == LightType::Rectangle, disk = body.shape.type == LightType::Disk;
     RTCGeometry geometry = rtcNewGeometry(device_, rectangle ? RTC_GEOMETRY_TYPE_QUAD
                                                    : disk    ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT
                                                              : RTC_GEOMETRY_TYPE_SPHERE_POINT);
@@ -134,10 +139,11 @@ void EmbreeScene::findSides(const PosedScene& posed) {
         const Plan& plan = plans_[i];
         if (plan.mode == Mode::None || plan.mode == Mode::Body || plan.mode == Mode::MovingBody) continue;
         // What is not in world space is traced in its own, where glTF's front faces turn counter-clockwise, mirrored or not.
-        sides_[i].turned = plan.inWorld && glm::determinant(glm::mat3(plan.worldFromObject)) < 0;
-        const std::vector<uint32_t>& ofTriangles = plan.mesh->triangleMaterial;
+        sides_[i].turned = plan.inWorld && glm::determinant(glm::mat3(posed.instances[i].worldFromObject)) < 0;
+        const Mesh* mesh = &posed.mesh(i);
+        const std::vector<uint32_t>& ofTriangles = mesh->triangleMaterial;
         const bool one = posed.scene->instances[i].material >= 0 || ofTriangles.empty();
-        const auto [known, isNew] = one ? std::pair(singleMeshes.end(), false) : singleMeshes.try_emplace(plan.mesh, false);
+        const auto [known, isNew] = one ? std::pair(singleMeshes.end(), false) : singleMeshes.try_emplace(mesh, false);
         if (one) {
             sides_[i].single = isSingleSided(posed, i, 0);
         } else {

@@ -1,6 +1,8 @@
 #pragma once
 #include <atomic>
+#include <functional>
 #include <mutex>
+#include <stop_token>
 #include <string>
 
 #include "trace/embree_scene.h"
@@ -9,37 +11,24 @@
 // What EmbreeScene is made of; for its own files only.
 namespace lumi {
 
-/// What decides how an instance is attached; a change of it rebuilds the top level.
+/// How an instance is attached; the posed scene says the rest. There may be millions.
 struct EmbreeScene::Plan {
     Mode mode = Mode::None;
     bool filtered = false;
-    bool inWorld = false;     ///< its triangles are Embree's in world space
-    const Mesh* mesh = nullptr;
-    Mat4 worldFromObject{1};  ///< of meshes
-    LightShape shape;         ///< bodies, radiance left out
-    std::shared_ptr<const ShutterTrack> track;  ///< meshes that move while the shutter is open
-    std::vector<LightShape> shutterShapes;      ///< bodies that do, at equally spaced moments
-
-    /// Of the instance at the moments of the open shutter, mostly one.
-    std::span<const Mat4> transforms() const {
-        static const Mat4 identity(1);
-        if (mode == Mode::MovingBody || inWorld) return {&identity, 1};
-        if (track) return track->worldFromObject;
-        return {&worldFromObject, 1};
-    }
-
-    bool sameAttachment(const Plan& other) const {
-        if (mode != other.mode || filtered != other.filtered || mesh != other.mesh) return false;
-        if (mode == Mode::Direct) return worldFromObject == other.worldFromObject;
-        return mode != Mode::Body || shape == other.shape;
-    }
+    bool inWorld = false;  ///< its triangles are Embree's in world space
 };
 
 struct EmbreeScene::Attachment {
     RTCGeometry geometry = nullptr;
     RTCScene own = nullptr;  ///< of a deforming mesh or a moving body
-    const Vec3* world = nullptr;
-    std::shared_ptr<const DeformedVertices> deformed;  ///< that `own` was built from
+};
+
+/// Where a light's body is, without what it emits: at shutter open, and at moments of the open shutter if it moves.
+struct EmbreeScene::Body {
+    LightShape shape;
+    std::vector<LightShape> shutterShapes;
+    Body(const PosedScene& posed, uint32_t instance);
+    bool operator==(const Body&) const = default;
 };
 
 struct EmbreeScene::MeshScene {
@@ -48,7 +37,7 @@ struct EmbreeScene::MeshScene {
     RTCScene scene = nullptr;
 };
 
-/// Embree's memory and its first error.
+/// Embree's memory, its first error, and whether it is to go on.
 struct EmbreeScene::Monitor {
     std::atomic<int64_t> bytes{0};
     std::atomic<int64_t> allowed{INT64_MAX};
@@ -57,6 +46,15 @@ struct EmbreeScene::Monitor {
     RTCError code = RTC_ERROR_NONE;
     std::string text;
 
+    std::stop_token stop;  ///< both of the call of bind() that is under way
+    const std::function<void(double)>* progress = nullptr;
+
+    /// Called by many threads while a scene is built; false ends that.
+    static bool goesOn(void* user, double fraction) {
+        const auto& monitor = *static_cast<const Monitor*>(user);
+        if (monitor.progress && *monitor.progress) (*monitor.progress)(fraction);
+        return !monitor.stop.stop_requested();
+    }
     static bool memory(void* user, ssize_t change, bool /*after*/) {
         auto& monitor = *static_cast<Monitor*>(user);
         const int64_t now = monitor.bytes += change;

@@ -52,15 +52,26 @@ bool isSpeck(const Mat4& m) {
 /// carriesRays() at all moments of the open shutter: between two of them a mirroring flattens too.
 bool carriesRays(const PosedInstance& pose) {
     if (!carriesRays(pose.worldFromObject)) return false;
-    if (!pose.track) return true;
+    if (!pose.track()) return true;
     const bool mirroring = isMirroring(pose.worldFromObject);
-    return std::all_of(pose.track->worldFromObject.begin(), pose.track->worldFromObject.end(),
+    return std::all_of(pose.track()->worldFromObject.begin(), pose.track()->worldFromObject.end(),
                        [&](const Mat4& m) { return carriesRays(m) && isMirroring(m) == mirroring; });
 }
 
+const Mesh* meshOf(const PosedScene& posed, size_t instance) { return posed.scene->instances[instance].mesh.get(); }
+
 }  // namespace
 
-std::vector<EmbreeScene::Plan> EmbreeScene::makePlans(const PosedScene& posed) const {
+EmbreeScene::Body::Body(const PosedScene& posed, uint32_t instance) {
+    const auto light = static_cast<size_t>(posed.scene->instances[instance].light);
+    shape = lightShape(posed.scene->lights[light], posed.lights[light].worldFromLight);
+    shutterShapes = lightShapes(posed.scene->lights[light], posed.lights[light].track);
+    const auto forgetEmission = [](LightShape& s) { s.radiance = Vec3(0), s.texture = nullptr; };
+    forgetEmission(shape);
+    for (LightShape& later : shutterShapes) forgetEmission(later);
+}
+
+std::vector<EmbreeScene::Plan> EmbreeScene::makePlans(const PosedScene& posed, const PosedScene* before) const {
     const Scene& scene = *posed.scene;
     const std::vector<bool> animated = animatedNodes(scene);
     struct Use {
@@ -75,36 +86,39 @@ std::vector<EmbreeScene::Plan> EmbreeScene::makePlans(const PosedScene& posed) c
     for (size_t i = 0; i < plans.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const PosedInstance& pose = posed.instances[i];
+        const Mesh* mesh = instance.mesh.get();
         Plan& plan = plans[i];
         // What moved once may move again: it stays an instance.
-        const bool moved = i < plans_.size() && plans_[i].mesh == instance.mesh.get() &&
+        const bool moved = before && i < plans_.size() && meshOf(*before, i) == mesh &&
                            (plans_[i].mode == Mode::Instanced || plans_[i].mode == Mode::MovingBody);
-        const bool moves = pose.moves || moved || (instance.node >= 0 && animated[static_cast<size_t>(instance.node)]);
-        plan.mesh = instance.mesh.get();
-        plan.worldFromObject = pose.worldFromObject;
+        const bool moves = pose.moves() || moved || (instance.node >= 0 && animated[static_cast<size_t>(instance.node)]);
         if (instance.light >= 0 && hasBody(scene.lights[static_cast<size_t>(instance.light)].type)) {
-            const auto light = static_cast<size_t>(instance.light);
             plan.mode = moves ? Mode::MovingBody : Mode::Body;
-            const PosedLight& frames = posed.lights[light];
-            plan.shape = lightShape(scene.lights[light], frames.worldFromLight);
-            plan.shutterShapes = lightShapes(scene.lights[light], frames.track);
-            const auto forgetEmission = [](LightShape& shape) { shape.radiance = Vec3(0), shape.texture = nullptr; };
-            forgetEmission(plan.shape);
-            for (LightShape& shape : plan.shutterShapes) forgetEmission(shape);
-        } else if (!plan.mesh || plan.mesh->triangles.empty()) {
-            plan.mode = Mode::None;
-        } else {
-            const Use& use = uses[plan.mesh];
+        } else if (mesh && !mesh->triangles.empty()) {
+            const Use& use = uses[mesh];
             plan.filtered = instance.material >= 0 ? hasAlpha(scene, static_cast<uint32_t>(instance.material)) : use.hasAlpha;
             const bool instanced = pose.deformed || moves || use.count > 1;
             // What is flat at present stands in the world as it is when the shutter opens.
             plan.inWorld = !instanced || !carriesRays(pose);
-            if (!plan.inWorld) plan.track = pose.track;
             plan.mode = pose.deformed ? Mode::Deforming : plan.inWorld ? Mode::Direct : Mode::Instanced;
             if (instanced && plan.inWorld && isSpeck(pose.worldFromObject)) plan.mode = Mode::None;
         }
     }
     return plans;
+}
+
+/// What decides how instances are attached; a change of it rebuilds the top level.
+bool EmbreeScene::sameAttachments(const PosedScene& a, const std::vector<Plan>& plansA, const PosedScene& b,
+                                  const std::vector<Plan>& plansB) {
+    if (plansA.size() != plansB.size()) return false;
+    for (size_t i = 0; i < plansA.size(); ++i) {
+        if (plansA[i].mode != plansB[i].mode || plansA[i].filtered != plansB[i].filtered || meshOf(a, i) != meshOf(b, i))
+            return false;
+        const auto index = static_cast<uint32_t>(i);
+        if (plansA[i].mode == Mode::Direct && a.instances[i].worldFromObject != b.instances[i].worldFromObject) return false;
+        if (plansA[i].mode == Mode::Body && !(Body(a, index).shape == Body(b, index).shape)) return false;
+    }
+    return true;
 }
 
 }  // namespace lumi

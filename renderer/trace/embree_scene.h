@@ -1,8 +1,10 @@
 #pragma once
 #include <embree3/rtcore.h>
 
+#include <functional>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "math/vector.h"
@@ -41,10 +43,13 @@ public:
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-    /// Builds what `posed` needs and keeps what did not change since the last call. `posed` must outlive the tracing.
+    /// Builds what `posed` needs and keeps what did not change since the last call. `posed` must outlive the tracing, and
+    /// the next call: what changed is found by comparing the two.
     /// Returns true if attachments were made anew: worldPositions() are others then.
-    /// Throws Error(Resources) if Embree runs out of memory or past the limit; the scene is empty then.
-    bool bind(const PosedScene& posed);
+    /// Throws Error(Resources) if Embree runs out of memory or past the limit, and Error(Interrupted) once `stop` is
+    /// requested, which is looked at between instances and within builds; the scene is empty then. `progress` (may be
+    /// empty) is called with the part of each of Embree's builds that is done, from any of its threads at a time.
+    bool bind(const PosedScene& posed, std::stop_token stop = {}, const std::function<void(double)>& progress = {});
 
     RTCScene handle() const { return top_; }
     /// World-space vertices of an instance that was attached as triangles; null for all others.
@@ -68,20 +73,26 @@ private:
     struct Attachment;
     struct MeshScene;
     struct Monitor;
+    struct Body;
 
     void clear();
-    std::vector<Plan> makePlans(const PosedScene& posed) const;
+    /// `before` is what is bound, null if nothing is.
+    std::vector<Plan> makePlans(const PosedScene& posed, const PosedScene* before) const;
+    static bool sameAttachments(const PosedScene& a, const std::vector<Plan>& plansA, const PosedScene& b,
+                                const std::vector<Plan>& plansB);
     void rebuild(const PosedScene& posed, std::vector<Plan> plans);
-    bool update(const PosedScene& posed, std::vector<Plan> plans);
+    void update(const PosedScene& posed, const PosedScene& before, std::vector<Plan> plans);
+    void attachAll(const PosedScene& posed);
     RTCScene newScene() const;
     /// Triangles with vertices for each of equally spaced moments of the open shutter, mostly one.
     RTCGeometry newTriangles(std::span<const Vec3* const> positions, size_t vertexCount, const Mesh& mesh,
                              const Mat4* transform, bool filtered) const;
-    RTCGeometry newDeforming(const Plan& plan, const DeformedVertices& open) const;
-    RTCGeometry newBody(const Plan& plan) const;
+    RTCGeometry newDeforming(const PosedScene& posed, uint32_t index, const Plan& plan) const;
+    RTCGeometry newBody(const PosedScene& posed, uint32_t index) const;
     /// `meshScene` is that of the instance's mesh if it is Instanced.
     void makeAttachment(const PosedScene& posed, uint32_t index, RTCScene meshScene);
     void throwIfFailed(const char* step) const;
+    void throwIfStopped() const;
     static void filter(const RTCFilterFunctionNArguments* arguments);
     static void filterBackFaces(const RTCFilterFunctionNArguments* arguments);
     void findSides(const PosedScene& posed);
@@ -90,7 +101,7 @@ private:
     RTCScene top_ = nullptr;
     int packetWidth_ = 1, strayPacketWidth_ = 1;
     Bounds3 bounds_;
-    const PosedScene* posed_ = nullptr;
+    const PosedScene* posed_ = nullptr;  ///< null while the scene is empty
     /// Of each instance: has it a surface whose back the camera does not see, and does Embree see its faces turned round?
     struct Sides {
         bool single = false, turned = false;

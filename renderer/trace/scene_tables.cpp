@@ -86,9 +86,9 @@ InstanceRecord makeInstance(const PosedScene& posed, const EmbreeScene& embree, 
     const PosedInstance& pose = posed.instances[index];
     InstanceRecord r;
     r.worldFromObject = pose.worldFromObject;
-    r.normalFromObject = pose.normalFromObject;
+    r.normalFromObject = pose.normalFromObject();
     r.mirrored = isMirroring(pose.worldFromObject);
-    r.track = pose.track.get();
+    r.track = pose.track();
     if (!instance.mesh) return r;
     const Mesh& mesh = *instance.mesh;
     r.triangles = dataOrNull(mesh.triangles);

@@ -55,9 +55,9 @@ Vec3 previousSurfacePosition(const SceneTables& tables, const PosedScene& posed,
         return tables.bodies[static_cast<size_t>(r.body)].previousAt(point.time).position(point.barycentrics);
     const PosedInstance& pose = posed.instances[point.instance];
     const UVec3 t = r.triangles[point.primitive];
-    const Vec3* rest = pose.deformedPrevious ? pose.deformedPrevious->positions.data() : r.restPositions;
-    if (pose.previousTrack) {
-        const ShutterTrack& track = *pose.previousTrack;
+    const Vec3* rest = pose.deformedPrevious() ? pose.deformedPrevious()->positions.data() : r.restPositions;
+    if (pose.previousTrack()) {
+        const ShutterTrack& track = *pose.previousTrack();
         Vec3 place = placeAmong(rest, t, point.barycentrics);
         if (!track.deformed.empty()) {
             const TrackPlace at = trackPlace(track.deformed.size(), point.time);
@@ -68,10 +68,10 @@ Vec3 previousSurfacePosition(const SceneTables& tables, const PosedScene& posed,
         }
         return transformPoint(track.worldFromObjectAt(point.time), place);
     }
-    const bool still = pose.worldFromObject == pose.worldFromObjectPrevious &&
-                       pose.deformed == pose.deformedPrevious && !pose.track;
+    const bool still = pose.worldFromObject == pose.worldFromObjectPrevious() &&
+                       pose.deformed == pose.deformedPrevious() && !pose.track();
     if (still) return surfacePosition(tables, point);
-    return transformPoint(pose.worldFromObjectPrevious, placeAmong(rest, t, point.barycentrics));
+    return transformPoint(pose.worldFromObjectPrevious(), placeAmong(rest, t, point.barycentrics));
 }
 
 }  // namespace lumi

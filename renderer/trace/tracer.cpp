@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "base/huge_pages.h"
 #include "base/parallel.h"
 #include "base/spares.h"
@@ -52,7 +53,7 @@ bool shadesAlike(const PosedScene& a, const PosedScene& b) {
     if (a.scene != b.scene) return false;
     for (size_t i = 0; i < a.instances.size(); ++i)
         if (a.instances[i].worldFromObject != b.instances[i].worldFromObject ||
-            a.instances[i].deformed != b.instances[i].deformed || a.instances[i].track != b.instances[i].track)
+            a.instances[i].deformed != b.instances[i].deformed || a.instances[i].track() != b.instances[i].track())
             return false;
     for (size_t i = 0; i < a.lights.size(); ++i)
         if (a.lights[i].worldFromLight != b.lights[i].worldFromLight ||
@@ -95,15 +96,16 @@ struct Tracer::Impl {
 Tracer::Tracer() : impl_(std::make_unique<Impl>()) {}
 Tracer::~Tracer() = default;
 
-void Tracer::bind(std::shared_ptr<const PosedScene> posed) {
+void Tracer::bind(std::shared_ptr<const PosedScene> posed, std::stop_token stop) {
     assert(posed);
     TraceScene& scene = impl_->scene;
     if (posed == scene.posed) return;
+    if (stop.stop_requested()) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
     // The old scene's data is in use until Embree and the tables have moved on.
     const std::shared_ptr<const PosedScene> earlier = std::exchange(scene.posed, posed);
     bool attachedAnew = false;
     try {
-        attachedAnew = scene.embree.bind(*posed);
+        attachedAnew = scene.embree.bind(*posed, std::move(stop));
     } catch (...) {
         // What did not fit leaves nothing behind: an empty scene that can be traced.
         scene.posed = emptyScene();

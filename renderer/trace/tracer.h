@@ -62,8 +62,10 @@ public:
     Tracer& operator=(const Tracer&) = delete;
 
     /// Makes `posed` the scene that is traced: builds, refits or keeps each part of the Embree scene and the lights by
-    /// what changed against the last call. Throws Error(Resources) if it does not fit the memory limit.
-    void bind(std::shared_ptr<const PosedScene> posed);
+    /// what changed against the last call. Throws Error(Resources) if it does not fit the memory limit, and
+    /// Error(Interrupted) once stopped: the scene before stays if nothing was done yet; else, as after any error, an empty
+    /// scene is bound.
+    void bind(std::shared_ptr<const PosedScene> posed, std::stop_token stop = {});
     const PosedScene& scene() const;
 
     /// Renders one frame of signals: `sampling.wanted` plus what they depend on. Returns false if stopped; then

@@ -173,6 +173,7 @@ std::vector<std::shared_ptr<const Mesh>> loadMeshes(const Document& document, co
     std::vector<std::shared_ptr<const Mesh>> meshes(document.model().meshes.size());
     parallelFor(static_cast<int64_t>(meshes.size()), [&](int64_t i) {
         const size_t index = static_cast<size_t>(i);
+        document.pollStop();
         if (used[index]) meshes[index] = MeshReader(document, materials, variant, index).read();
     });
     return meshes;

@@ -173,7 +173,6 @@ void NodeTree::addGpuInstances(size_t index, const Instance& prototype, const ti
     for (size_t i = 0; i < count; ++i) {
         if (i % 4096 == 0) document_.pollStop();
         Node node;
-        node.name = prototype.name + "-" + std::to_string(i);
         node.parent = prototype.node;
         node.morphWeights = scene_.nodes[static_cast<size_t>(prototype.node)].morphWeights;
         if (!translations.empty()) node.local.translation = translations[i];
@@ -182,7 +181,7 @@ void NodeTree::addGpuInstances(size_t index, const Instance& prototype, const ti
         if (!isFinite(node.local.translation) || !isFinite(node.local.scale))
             document_.fail(path, "instance " + std::to_string(i) + " has a transform that is not finite");
         Instance instance = prototype;
-        instance.name = node.name;
+        instance.name = prototype.name + "-" + std::to_string(i);
         instance.node = static_cast<int>(scene_.nodes.size());
         scene_.nodes.push_back(std::move(node));
         scene_.instances.push_back(std::move(instance));

@@ -90,12 +90,12 @@ ParsedObj parse(const std::filesystem::path& path, MessageLog& log) {
 /// All shapes as the limit surface of one cage, if that is asked for. Nothing where only the file's own tags ask for it and
 /// there is no limit surface.
 std::shared_ptr<Mesh> limitSurface(const ParsedObj& parsed, const Subdivision& subdivision, uint32_t fallback,
-                                   const std::string& where, MessageLog& log) {
+                                   const std::string& where, MessageLog& log, const std::stop_token& stop) {
     const bool asked = subdivision.scheme == SubdivisionScheme::CatmullClark;
     if (!asked && (subdivision.scheme == SubdivisionScheme::None || !hasTags(parsed.shapes))) return nullptr;
     try {
         const SubdivisionCage cage = cageOf(parsed.attributes, parsed.shapes, fallback, where, log);
-        auto mesh = std::make_shared<Mesh>(tessellate(cage, subdivision.rate, where).mesh);
+        auto mesh = std::make_shared<Mesh>(tessellate(cage, subdivision.rate, where, stop).mesh);
         mesh->name = "surface";
         return mesh;
     } catch (const Error& error) {
@@ -107,9 +107,10 @@ std::shared_ptr<Mesh> limitSurface(const ParsedObj& parsed, const Subdivision& s
 
 /// The shapes as meshes, or the one that they are the cage of.
 std::vector<std::shared_ptr<Mesh>> buildMeshes(const ParsedObj& parsed, const std::vector<Material>& materials,
-                                               const Subdivision& subdivision, const std::string& where, MessageLog& log) {
+                                               const Subdivision& subdivision, const std::string& where, MessageLog& log,
+                                               const std::stop_token& stop) {
     const uint32_t fallback = static_cast<uint32_t>(materials.size() - 1);
-    std::vector<std::shared_ptr<Mesh>> meshes{limitSurface(parsed, subdivision, fallback, where, log)};
+    std::vector<std::shared_ptr<Mesh>> meshes{limitSurface(parsed, subdivision, fallback, where, log, stop)};
     const bool subdivided = meshes.front() != nullptr;
     if (!subdivided) meshes.resize(parsed.shapes.size());
     parallelFor(static_cast<int64_t>(meshes.size()), [&](int64_t i) {
@@ -121,7 +122,7 @@ std::vector<std::shared_ptr<Mesh>> buildMeshes(const ParsedObj& parsed, const st
         const bool any = std::any_of(mesh->triangleMaterial.begin(), mesh->triangleMaterial.end(), needsTangents) ||
                          (mesh->triangleMaterial.empty() && needsTangents(mesh->material));
         if (any && !mesh->uv[0].empty() && !mesh->normals.empty()) computeTangents(*mesh);
-    });
+    }, stop);
     return meshes;
 }
 
@@ -148,7 +149,8 @@ Scene loadObj(const std::filesystem::path& path, MessageLog& log, const LoadOpti
 
     step(0.7f, "Building meshes");
     const uint32_t fallback = static_cast<uint32_t>(scene.materials.size() - 1);
-    const std::vector<std::shared_ptr<Mesh>> meshes = buildMeshes(parsed, scene.materials, options.subdivision, where, log);
+    const std::vector<std::shared_ptr<Mesh>> meshes = buildMeshes(parsed, scene.materials, options.subdivision, where, log, options.stop);
+    step(0.9f, "Placing objects");
     bool usesFallback = false;
     for (size_t i = 0; i < meshes.size(); ++i) {
         if (meshes[i]->triangles.empty()) continue;

@@ -336,7 +336,7 @@ TEST(GltfFeatures, AnimationsOfAllKinds) {
     EXPECT_EQ(scene->nodes[0].morphWeights, std::vector<float>{0.5f});
     const auto posed = poseScene(scene, {.open = 1, .close = 1, .previousOpen = 0.5f});
     expectNear(Vec3(posed->instances[0].worldFromObject[3]), {2, 0, 0});
-    expectNear(Vec3(posed->instances[0].worldFromObjectPrevious[3]), {1, 0, 0});
+    expectNear(Vec3(posed->instances[0].worldFromObjectPrevious()[3]), {1, 0, 0});
     expectNear(posed->instances[0].deformed->positions[0], {0, 0, 0});
     file.json["animations"][0]["samplers"][0]["output"] = weights;
     file.expectRefused({"/animations/0/samplers/0/output"});

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <string>
@@ -223,6 +224,33 @@ TEST(Assets, StayInTheirFolder) {
         writeFileAtomically(folder / "scene.json", std::string_view(text));
         MessageLog log;
         expectError(ErrorKind::BadInput, [&] { loadScene(folder / "scene.json", log); }, {"leads out of the folder of assets"});
+    }
+}
+
+// Wherever a stop comes, between steps or within one, loading ends there.
+TEST(Load, StopsAtEveryStep) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "cage.obj", std::string_view("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"));
+    const std::string text = R"({"version": 1, "assets": {"cage": {"obj": "cage.obj", "subdivision": "catmull-clark", "rate": 64},
+        "ball": {"sphere": {}}}, "instances": [{"asset": "cage"}, {"asset": "ball"}]})";
+    writeFileAtomically(folder / "a.json", std::string_view(text));
+    MessageLog log;
+    std::vector<float> steps;
+    LoadOptions options;
+    options.progress = [&](float fraction, const std::string&) { steps.push_back(fraction); };
+    loadScene(folder / "a.json", log, options);
+    ASSERT_GT(steps.size(), 6u);
+    EXPECT_TRUE(std::is_sorted(steps.begin(), steps.end()));
+    // After the last step there is nothing left to stop.
+    for (size_t last = 0; last + 1 < steps.size(); ++last) {
+        std::stop_source source;
+        size_t done = 0;
+        options.stop = source.get_token();
+        options.progress = [&](float, const std::string&) {
+            if (done++ == last) source.request_stop();
+        };
+        expectError(ErrorKind::Interrupted, [&] { loadScene(folder / "a.json", log, options); }, {});
+        EXPECT_LE(done, last + 2) << last;
     }
 }
 

@@ -27,6 +27,21 @@ TEST(FrameEngine, TheFirstFrameIsACutAndTheNextIsNot) {
     EXPECT_TRUE(e.draw(document, 6, true).changes.cut) << "asked for";
 }
 
+TEST(FrameEngine, ASceneWhoseBuildingWasStoppedIsBuiltTheNextTime) {
+    Engine stopped, straight;
+    const Document document(tinyScene());
+    std::stop_source source;
+    source.request_stop();
+    EXPECT_FALSE(stopped.engine.advance({document, 0, true, {}, {}}, {}, source.get_token()));
+    EXPECT_FALSE(stopped.engine.preview(document, {8, 6}, {}, source.get_token()));
+    expectError(ErrorKind::Interrupted, [&] { stopped.engine.checkSignals(document, {}, source.get_token()); }, {});
+    // A change stops the frame alone: its scene is there for the next.
+    EXPECT_FALSE(stopped.engine.advance({document, 0, true, {}, {}}, source.get_token()));
+    const FrameOutput next = stopped.draw(document, 0, true), fresh = straight.draw(document, 0, true);
+    EXPECT_TRUE(*next.results.at("accumulate") == *fresh.results.at("accumulate"));
+    EXPECT_TRUE(stopped.engine.preview(document, {8, 6}).has_value());
+}
+
 TEST(FrameEngine, ChangesAreTold) {
     const auto changesAfter = [](const char* id, const char* text) {
         Engine e;
