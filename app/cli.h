@@ -37,6 +37,7 @@ struct RenderOptions {
     std::vector<std::string> out;
     std::string buffers;
     bool half = false;
+    bool stereo = false;  ///< both eyes, each to files of its own
     Progress progress = Progress::Auto;
 };
 

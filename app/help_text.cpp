@@ -80,6 +80,7 @@ std::string renderFooter() {
            "  lumiscope render atrium --module none --frames 8 --buffers all --out atrium.%04d.exr\n"
            "  lumiscope render room --set path.max-depth=3 --set camera.aperture=0.02 --size 640x360\n"
            "  lumiscope render room --camera-path walk.json --frames 240 --out walk.%04d.exr\n"
+           "  lumiscope render room --stereo --set camera.interaxial=0.1 --out room.png    room.left.png, room.right.png\n"
            "  lumiscope render --replay cornell.png --out again.png\n\n"
            "Frames that are there with the same state are kept: the same command goes on after an interruption.\n\n" +
            sceneList() + moduleList() + "\n" + kExitCodes;

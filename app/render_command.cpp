@@ -4,17 +4,15 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/render_resume.h"
+#include "app/render_summary.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "base/isa.h"
 #include "base/memory.h"
-#include "math/statistics.h"
-#include "session/ray_rate.h"
 
 namespace lumi {
 namespace fs = std::filesystem;
@@ -27,9 +25,9 @@ std::string fileName(const std::string& instance) {
     return name;
 }
 
-/// `<scene>.<module>.exr` in the current folder, with a number if that exists.
-std::string defaultOutput(const fs::path& scene, const std::string& instance) {
-    const std::string name = unusedPath(scene.stem().string() + "." + fileName(instance) + ".exr").string();
+/// `<scene>.<module>.exr` in the current folder, with a number if that exists; `eye` goes before the extension.
+std::string defaultOutput(const fs::path& scene, const std::string& instance, const std::string& eye) {
+    const std::string name = unusedPath(scene.stem().string() + "." + fileName(instance) + eye + ".exr").string();
     std::string pattern;  // a name of --out, where % stands before the frame's number
     for (const char c : name) pattern += c == '%' ? "%%" : std::string(1, c);
     return pattern;
@@ -44,61 +42,6 @@ std::string lastInstance(const Replay& replay, int view, std::string instance) {
     return instance;
 }
 
-/// What is told at the end, gathered frame by frame.
-class Summary {
-public:
-    void add(const FrameOutput& frame) {
-        ++frames_;
-        const RayRate rate = rayRate(frame);
-        rays_ += rate.rays, traceMs_ += rate.ms;
-        nonFinite_ += frame.rays.nonFinite;
-        for (const auto& [instance, rays] : frame.runRays) nonFinite_ += rays.nonFinite;
-        moduleBytes_ = frame.moduleBytes;
-        pixels_ = std::max<int64_t>(frame.camera.extent.area(), 1);
-        for (const auto& [stage, ms] : frame.stagesMs) {
-            if (!stages_.count(stage)) order_.push_back(stage);
-            stages_[stage].push_back(ms);
-        }
-    }
-    void print(const RenderOutputs& outputs, const MachineOptions& machine, MessageLog& log, double seconds) const {
-        if (nonFinite_ > 0) log.warning(fmt::format("{} path contributions were not finite and were dropped", nonFinite_));
-        const double mraysPerSecond = traceMs_ > 0 ? static_cast<double>(rays_) / traceMs_ / 1000 : 0;
-        if (machine.json) {
-            json stages = json::object();
-            for (const std::string& stage : order_) stages[stage] = median(stages_.at(stage));
-            const json result = {{"frames", frames_},        {"frames_kept", kept_}, {"stages_ms", stages},
-                                 {"rays", rays_},            {"mrays_per_s", mraysPerSecond},
-                                 {"files", outputs.files()}, {"peak_memory_bytes", peakResidentBytes()},
-                                 {"module_bytes", moduleBytes_}, {"warnings", log.warnings()}};
-            std::puts(result.dump(2).c_str());
-        }
-        if (machine.quiet) return;
-        const size_t shown = std::min<size_t>(outputs.files().size(), 4);
-        for (size_t i = 0; i < shown; ++i) std::fputs(("Wrote " + outputs.files()[i] + "\n").c_str(), stderr);
-        if (shown < outputs.files().size())
-            std::fputs(fmt::format("... and {} more files\n", outputs.files().size() - shown).c_str(), stderr);
-        std::fputs(fmt::format("{} frame{}, {:.1f} Mrays at {:.2f} Mray/s, {:.1f} s, {}\n", frames_, frames_ == 1 ? "" : "s",
-                               static_cast<double>(rays_) / 1e6, mraysPerSecond, seconds, formatBytes(peakResidentBytes()))
-                       .c_str(),
-                   stderr);
-        for (const auto& [instance, bytes] : moduleBytes_)
-            if (bytes > 0)
-                std::fputs(fmt::format("{} holds {}, {:.0f} bytes a pixel\n", instance, formatBytes(bytes),
-                                       static_cast<double>(bytes) / static_cast<double>(pixels_)).c_str(), stderr);
-    }
-
-    void keep(int64_t frames) { kept_ = frames; }
-
-private:
-    int64_t frames_ = 0, kept_ = 0;
-    uint64_t rays_ = 0, nonFinite_ = 0;
-    double traceMs_ = 0;
-    std::map<std::string, size_t> moduleBytes_;  ///< after the last frame, by instance
-    int64_t pixels_ = 1;
-    std::map<std::string, std::vector<double>> stages_;
-    std::vector<std::string> order_;
-};
-
 /// Runs frames and writes what is asked for.
 class Renderer {
 public:
@@ -107,36 +50,18 @@ public:
 
     int render() {
         const fs::path file = findScene(options_.scene.scene);
-        auto scene = openScene(file, options_.scene, log_, stop_);
-        Document document = makeDocument(scene, options_.scene, log_);
-        choice_ = {0, options_.buffers, options_.half};
-        const std::string& instance = document.view(choice_.view).module;
-        BufferSelection::parse(choice_.buffers, instance, "--buffers");
-        start(document, file, instance, {options_.scene.scene, scene->contentDigest});
-
-        const FrameRange& range = options_.frames;
-        const Clock clock{0, 0, document.render().fps};
-        const int64_t first = range.begin - options_.warmUp;
-        const bool timed = range.end - first > 1 || first > 0;
-        const std::optional<CameraPath> path = readCameraPathOf(options_.scene);
-        const std::function<Document(int64_t)> documentAt = [&](int64_t number) {
-            Document then = document;
-            if (timed) then.setTime(clock.at(number));
-            followCameraPath(then, path);
-            return then;
-        };
-        const ResumePlan plan = planResume(*outputs_, {options_.scene.scene, scene->contentDigest}, choice_, documentAt, first,
-                                           range.begin, range.end);
-        if (plan.kept > 0) log_.info(fmt::format("{} frames are there already", plan.kept));
-        summary_.keep(plan.kept);
-        last_ = range.end - 1, first_ = plan.from;
-        for (int64_t number = plan.from; number < range.end; ++number) {
-            // What is there is trusted when the last of it comes out again as it is.
-            const bool check = plan.kept > 0 && number == range.begin + plan.kept - 1 && number < plan.write;
-            draw(documentAt(number), number, number == plan.from,
-                 number >= plan.write ? Fate::Written : check ? Fate::Checked : Fate::Dropped);
+        const auto scene = openScene(file, options_.scene, log_, stop_);
+        std::vector<Sequence> sequences;
+        if (!options_.stereo) sequences.push_back(sequenceOf(makeDocument(scene, options_.scene, log_), file, ""));
+        for (const std::string eye : {"left", "right"}) {
+            if (!options_.stereo) break;
+            MessageLog toldAlready;  // with the first eye
+            const SceneOptions seen = seenBy(eye);
+            sequences.push_back(sequenceOf(makeDocument(scene, seen, sequences.empty() ? log_ : toldAlready), file, eye));
         }
-        return finish(range.begin, range.end);
+        printMessages(log_, machine_);
+        for (const Sequence& sequence : sequences) drawSequence(sequence, {options_.scene.scene, scene->contentDigest});
+        return finish();
     }
 
     int replay() {
@@ -155,30 +80,97 @@ public:
         const std::string where = options_.replay.string();
         applyState(document, replay.start);
         choice_ = OutputChoice::parse(replay.output, where);
-        start(document, file, lastInstance(replay, choice_.view, document.view(choice_.view).module), replay.scene);
+        Sequence sequence{document, "", nullptr};
+        openOutputs(sequence, file, lastInstance(replay, choice_.view, document.view(choice_.view).module));
+        printMessages(log_, machine_);
+        start(sequence, replay.scene);
         first_ = replay.first, last_ = replay.last;
         for (FrameNumber number = replay.first; number <= replay.last; ++number) {
             if (const std::optional<json> values = replay.valuesOf(number)) applyState(document, *values);
             draw(document, number, number == replay.first, number == replay.last ? Fate::Written : Fate::Dropped);
         }
-        return finish(replay.last, replay.last + 1);
+        endSequence(replay.last, replay.last + 1);
+        return finish();
     }
 
 private:
     enum class Fate { Dropped, Checked, Written };
 
+    /// Frames of one document, or of one eye that sees it.
+    struct Sequence {
+        Document document;
+        std::string eye;  ///< empty: no pair
+        std::shared_ptr<RenderOutputs> outputs;
+    };
+
     /// `instance` is the one whose image the last frame shows, for the default name.
-    void start(const Document& document, const fs::path& file, const std::string& instance, SceneReference reference) {
-        printMessages(log_, machine_);
+    void openOutputs(Sequence& sequence, const fs::path& file, const std::string& instance) {
+        const std::string eye = sequence.eye.empty() ? "" : "." + sequence.eye;
         std::vector<std::string> names = options_.out;
-        if (names.empty()) names.push_back(defaultOutput(file, instance));
-        outputs_ = std::make_unique<RenderOutputs>(names, choice_, document.render().fps, log_);
+        for (std::string& name : names)
+            if (!eye.empty()) name = fs::path(name).replace_extension(eye + fs::path(name).extension().string()).string();
+        if (names.empty()) names.push_back(defaultOutput(file, instance, eye));
+        sequence.outputs = std::make_shared<RenderOutputs>(names, choice_, sequence.document.render().fps, log_);
+    }
+
+    Sequence sequenceOf(Document document, const fs::path& file, const std::string& eye) {
+        choice_ = {0, options_.buffers, options_.half};
+        const std::string instance = document.view(choice_.view).module;
+        BufferSelection::parse(choice_.buffers, instance, "--buffers");
+        Sequence sequence{std::move(document), eye, nullptr};
+        openOutputs(sequence, file, instance);
+        return sequence;
+    }
+
+    /// The options with that eye of the camera's pair, which goes before what --set says of it.
+    SceneOptions seenBy(const std::string& eye) const {
+        SceneOptions seen = options_.scene;
+        auto place = seen.values.begin();
+        for (auto value = seen.values.begin(); value != seen.values.end(); ++value)
+            if (value->id == "camera.select") place = value + 1;
+        TypedValue stereo;
+        stereo.id = "camera.stereo", stereo.text = eye, stereo.option = "--stereo";
+        seen.values.insert(place, stereo);
+        return seen;
+    }
+
+    void start(const Sequence& sequence, SceneReference reference) {
+        outputs_ = sequence.outputs;
+        eye_ = sequence.eye;
         states_ = StateLog(std::move(reference));
-        const RenderSettings& render = document.render();
+        const RenderSettings& render = sequence.document.render();
         checkMemory(fmt::format("rendering {}x{}", render.width, render.height),
                     uint64_t(400) * static_cast<uint64_t>(render.width) * static_cast<uint64_t>(render.height));
         engine_.emplace(log_);
-        total_.restart();
+        sequenceTimer_.restart();
+    }
+
+    void drawSequence(const Sequence& sequence, const SceneReference& reference) {
+        start(sequence, reference);
+        const Document& document = sequence.document;
+        const FrameRange& range = options_.frames;
+        const Clock clock{0, 0, document.render().fps};
+        const int64_t first = range.begin - options_.warmUp;
+        const bool timed = range.end - first > 1 || first > 0;
+        const std::optional<CameraPath> path = readCameraPathOf(options_.scene);
+        const std::function<Document(int64_t)> documentAt = [&](int64_t number) {
+            Document then = document;
+            if (timed) then.setTime(clock.at(number));
+            followCameraPath(then, path);
+            return then;
+        };
+        const ResumePlan plan = planResume(*outputs_, reference, choice_, documentAt, first, range.begin, range.end);
+        const std::string whose = eye_.empty() ? "" : " of the " + eye_ + " eye";
+        if (plan.kept > 0) log_.info(fmt::format("{} frames{} are there already", plan.kept, whose));
+        summary_.keep(plan.kept);
+        last_ = range.end - 1, first_ = plan.from;
+        for (int64_t number = plan.from; number < range.end; ++number) {
+            // What is there is trusted when the last of it comes out again as it is.
+            const bool check = plan.kept > 0 && number == range.begin + plan.kept - 1 && number < plan.write;
+            draw(documentAt(number), number, number == plan.from,
+                 number >= plan.write ? Fate::Written : check ? Fate::Checked : Fate::Dropped);
+        }
+        endSequence(range.begin, range.end);
     }
 
     void draw(const Document& document, FrameNumber number, bool cut, Fate fate) {
@@ -209,17 +201,20 @@ private:
         ProgressLine line(shown, [&] {
             const double part = std::min(static_cast<double>(engine_->tracedSoFar().cameraRays) / frameRays, 1.0);
             const double fraction = (static_cast<double>(request.frame - first_) + part) / frames;
-            const double seconds = total_.elapsedMs() / 1000;
+            const double seconds = sequenceTimer_.elapsedMs() / 1000;
             const double left = fraction > 0.01 ? seconds / fraction - seconds : 0;
-            return fmt::format("frame {} of {}..{}  {:3.0f}%  {} left", request.frame, first_, last_ + 1, 100 * fraction,
-                               fraction > 0.01 ? formatDuration(left) : "?");
+            return fmt::format("{}frame {} of {}..{}  {:3.0f}%  {} left", eye_.empty() ? "" : eye_ + " eye, ", request.frame,
+                               first_, last_ + 1, 100 * fraction, fraction > 0.01 ? formatDuration(left) : "?");
         });
-        return engine_->advance(request, stop_);
+        return engine_->advance(request, stop_, stop_);
     }
 
-    int finish(int64_t begin, int64_t end) {
+    void endSequence(int64_t begin, int64_t end) {
         outputs_->finish(begin, end);
-        summary_.print(*outputs_, machine_, log_, total_.elapsedMs() / 1000);
+        files_.insert(files_.end(), outputs_->files().begin(), outputs_->files().end());
+    }
+    int finish() {
+        summary_.print(files_, machine_, log_, total_.elapsedMs() / 1000);
         return 0;
     }
 
@@ -261,12 +256,14 @@ private:
     MessageLog& log_;
     std::stop_token stop_;
     std::optional<FrameEngine> engine_;  ///< made when the instruction set is known
-    std::unique_ptr<RenderOutputs> outputs_;
+    std::shared_ptr<RenderOutputs> outputs_;
+    std::string eye_;  ///< that is being drawn
     OutputChoice choice_;
     StateLog states_;
-    Summary summary_;
+    RenderSummary summary_;
+    std::vector<std::string> files_;
     int64_t first_ = 0, last_ = 0;
-    Timer total_;
+    Timer total_, sequenceTimer_;
 };
 
 }  // namespace

@@ -23,6 +23,8 @@ public:
                       "(<scene>.<module>.exr, a free name)");
         app_->add_option("--buffers", render.buffers, "Layers to add to .exr files, as `list buffers` names them, or all")
             ->type_name("NAME,...");
+        app_->add_flag("--stereo", render.stereo,
+                       "Render both eyes of the camera's pair: NAME.left.EXT and NAME.right.EXT; camera.interaxial is their distance");
         app_->add_flag("--half", render.half, "Store colours of .exr files as half");
         progress_.add(*app_);
         addMachine(*app_, line_.machine, true);
@@ -38,11 +40,12 @@ public:
         if (!frames_.frames.empty()) render.frames = parseFrames(frames_.frames);
         render.warmUp = parseWarmUp(frames_.warmUp, render.frames);
         checkTime(render);
+        checkStereo(render);
         render.progress = progress_.progress();
         if (render.scene.scene.empty() && render.replay.empty())
             throwUsage({"render needs a scene", "", "lumiscope render SCENE, or --replay FILE", ""});
         if (!render.replay.empty() && (!render.scene.values.empty() || !frames_.frames.empty() || !frames_.warmUp.empty() ||
-                                       !render.scene.cameraPath.empty() || !render.buffers.empty() || render.half))
+                                       !render.scene.cameraPath.empty() || !render.buffers.empty() || render.half || render.stereo))
             throwUsage({"everything about the image comes from the file", "--replay",
                         "only SCENE (where it is now), --out and options of the machine beside it", ""});
     }
@@ -54,6 +57,13 @@ private:
         for (const TypedValue& value : render.scene.values)
             if (value.id == "time")
                 throwUsage({"the number of a frame gives its time", value.option, "time only without --frames", ""});
+    }
+
+    /// Both eyes, or one.
+    static void checkStereo(const RenderOptions& render) {
+        for (const TypedValue& value : render.scene.values)
+            if (render.stereo && value.id == "camera.stereo")
+                throwUsage({"both eyes are rendered", value.option, "camera.stereo only without --stereo", ""});
     }
 
     SharedText text_;

@@ -80,6 +80,33 @@ class Render(CommandTest):
         self.assertNotEqual(pixels(self.bytes("cold.png")), pixels(self.bytes("warm.png")))
         self.assertEqual(pixels(self.bytes("warm.png")), pixels(self.bytes("all.png")))
 
+    def test_a_stereo_pair_is_both_eyes(self):
+        result = self.good("render", "cornell", *TINY, "--stereo", "--spp", 2, "--set", "camera.interaxial=0.4", "--out", "a.exr",
+                           "--out", "a.png", "--json")
+        self.assertEqual(result.json["files"], ["a.left.exr", "a.left.png", "a.right.exr", "a.right.png"])
+        self.assertEqual(result.json["frames"], 2)
+        self.assertFalse((self.folder / "a.exr").exists())
+        for eye in ("left", "right"):
+            self.good("render", "cornell", *QUIET, "--spp", 2, "--set", "camera.stereo=" + eye, "--set", "camera.interaxial=0.4",
+                      "--out", "one.exr", "--out", "one.png")
+            for kind in ("exr", "png"):
+                self.assertEqual(self.bytes("one." + kind), self.bytes(f"a.{eye}.{kind}"))
+            self.good("render", "--replay", f"a.{eye}.png", "--quiet", "--out", "again.png")
+            self.assertEqual(self.bytes("again.png"), self.bytes(f"a.{eye}.png"))
+        self.assertNotEqual(self.bytes("a.left.png"), self.bytes("a.right.png"))
+        # Each eye's frames are kept, and go on, by themselves.
+        frames = ["render", "cornell", *QUIET, "--stereo", "--frames", 2, "--out", "s.%d.png"]
+        self.good(*frames)
+        before = self.bytes("s.1.right.png")
+        (self.folder / "s.1.right.png").unlink()
+        value = self.good(*frames, "--json").json
+        self.assertEqual((value["frames_kept"], self.bytes("s.1.right.png")), (3, before))
+        self.good("render", "cornell", *QUIET, "--stereo")
+        self.assertTrue((self.folder / "cornell.accumulate.left.exr").exists())
+        self.assertTrue((self.folder / "cornell.accumulate.right.exr").exists())
+        self.refused(2, ["both eyes are rendered", "--set"], "render", "cornell", *QUIET, "--stereo", "--set", "camera.stereo=left")
+        self.refused(2, ["--replay"], "render", "--replay", "a.left.png", "--stereo", "--quiet")
+
     def test_layers(self):
         self.good("render", "cornell", *QUIET, "--out", "plain.exr")
         self.assertEqual(set(exr_header(self.bytes("plain.exr"))["channels"]), {"R", "G", "B", "A", "Z"})
