@@ -12,6 +12,7 @@
 #include "reconstruct/stable/reproject_samples.h"
 #include "reconstruct/stable/shading.h"
 #include "reconstruct/stable/stable_taps.h"
+#include "reconstruct/stable/temporal_integration.h"
 #include "support/transport_scene.h"
 
 namespace lumi {
@@ -292,6 +293,17 @@ TEST(StableTaps, SubpixelsAreDrawnAsPixels) {
     EXPECT_GT(out.at(0, 5, 5), 0.5f);
     EXPECT_LT(out.at(2, 5, 5), 0.5f);
     EXPECT_LT(out.at(0, 6, 6), 0.1f);
+}
+
+TEST(StableTemporal, MotionIsTheLongestOfAPixelsVisibleSamples) {
+    const std::vector<uint32_t> first{0, 3, 3, 5};  // three samples, none, two
+    const std::vector<Vec2> motions{{1, 0}, {-2, 2}, {9, 9}, {0, -1}, {0.5f, 0}};
+    const std::vector<uint8_t> hidden{0, 0, 1, 0, 0};
+    Image out({3, 1}, 2);
+    longestMotions(first, motions, hidden, out);
+    const float expected[3][2] = {{-2, 2}, {0, 0}, {0, -1}};
+    for (int x = 0; x < 3; ++x)
+        for (int c = 0; c < 2; ++c) EXPECT_EQ(out.at(c, x, 0), expected[x][c]) << x << ' ' << c;
 }
 
 // What samples average is what the signals call indirect diffuse light, where two lobes overlap, too.

@@ -65,7 +65,7 @@ std::vector<uint32_t> sortByRow(Extent2 extent, ReprojectedSamples& out) {
         rowBegins[row] = sum;
         for (size_t chunk = 0; chunk < chunks; ++chunk) sum += std::exchange(out.counts[chunk * (rows + 1) + row], sum);
     }
-    out.order.resize(sum);
+    resizeAnew(out.order, sum);
     parallelRanges(count, kChunk, [&](int64_t begin, int64_t end) {
         uint32_t* next = out.counts.data() + static_cast<size_t>(begin / kChunk) * (rows + 1);
         for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) out.order[next[out.rows[i]]++] = static_cast<uint32_t>(i);
@@ -131,15 +131,15 @@ void ScreenPlaces::describe(ProjectionRow& row) const {
 
 bool reprojectSamples(const FrameContext& context, const SampleSet& previous, ReprojectedSamples& out) {
     const Extent2 extent = context.camera.extent;
-    out.places.resize(previous.size()), out.targets.resize(previous.size()), out.rows.resize(previous.size());
-    out.moved.resize(standsStill(context, previous) ? 0 : previous.size());
+    resizeAnew(out.places, previous.size()), resizeAnew(out.targets, previous.size()), resizeAnew(out.rows, previous.size());
+    resizeAnew(out.moved, standsStill(context, previous) ? 0 : previous.size());
     const auto chunks = (static_cast<int64_t>(previous.size()) + kChunk - 1) / kChunk;
     out.counts.assign(static_cast<size_t>(chunks * (extent.height + 1)), 0);
     project(context, previous, out);
     if (context.stop.stop_requested()) return false;
     const std::vector<uint32_t> rowBegins = sortByRow(extent, out);
     out.words.resize(static_cast<size_t>(extent.area())), out.first.resize(static_cast<size_t>(extent.area()));
-    out.sources.resize(out.order.size());
+    resizeAnew(out.sources, out.order.size());
     constexpr int64_t kRows = 8;
     parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
         std::vector<uint32_t> slots(static_cast<size_t>(extent.width) * subpixel::kCount);

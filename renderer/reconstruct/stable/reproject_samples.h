@@ -20,9 +20,10 @@ struct ReprojectedSamples {
     std::vector<uint32_t> order;    ///< samples by the row they land in
     std::vector<uint32_t> counts;   ///< of each part of the samples in each row
     static constexpr uint32_t kOccluded = 1u << 31;
+    static constexpr size_t kBytesASample = sizeof(Vec2) + sizeof(Vec3) + 4 * sizeof(uint32_t);
     size_t bytes() const {
-        return 4 * (words.size() + first.size() + sources.size() + targets.size() + rows.size() + order.size() + counts.size()) +
-               sizeof(Vec2) * places.size() + sizeof(Vec3) * moved.size();
+        return heldBytes(words) + heldBytes(first) + heldBytes(sources) + heldBytes(places) + heldBytes(moved) + heldBytes(targets) +
+               heldBytes(rows) + heldBytes(order) + heldBytes(counts);
     }
 };
 

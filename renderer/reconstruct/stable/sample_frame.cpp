@@ -50,16 +50,17 @@ void copyFrom(const T* from, const uint32_t* sources, T* to, size_t count) {
 }  // namespace
 
 size_t SampleFrame::bytes() const {
-    return colours.size() * sizeof(Vec3) + verdicts.size() * 2 + motions.size() * sizeof(Vec2) + changes.size() * sizeof(PixelChange) + reprojected.bytes() + chunkSums.size() * 4;
+    return heldBytes(colours) + heldBytes(verdicts) + heldBytes(hidden) + heldBytes(motions) + heldBytes(changes) + heldBytes(chunkSums) +
+           reprojected.bytes();
 }
 
 void numberSamples(SampleFrame& frame, bool withIndirect, SampleSet& next) {
     const uint32_t sum = beginPixels(frame, next);
-    const size_t more = sum > next.locations.capacity() ? sum - next.locations.capacity() : 0;
-    if (more > 0) checkMemory("the samples of stable ray tracing", more * SampleSet::bytesASample(withIndirect));
+    if (sum > next.locations.capacity())
+        checkMemory("the samples of stable ray tracing", (sum + sum / 8) * (SampleSet::bytesASample(withIndirect) + SampleFrame::kBytesASample));
     next.resize(sum, withIndirect);
-    frame.motions.resize(frame.wantsMotions ? sum : 0), frame.verdicts.resize(sum);
-    frame.hidden.resize(sum), frame.colours.resize(withIndirect ? sum : 0);
+    resizeAnew(frame.motions, frame.wantsMotions ? sum : 0), resizeAnew(frame.verdicts, sum);
+    resizeAnew(frame.hidden, sum), resizeAnew(frame.colours, withIndirect ? sum : 0);
 }
 
 SampleGatherer::SampleGatherer(const SampleSet& previous, const DensitySettings& settings, uint32_t random, bool keepsDirect, SampleFrame& frame,

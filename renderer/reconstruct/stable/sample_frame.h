@@ -27,6 +27,8 @@ struct SampleFrame {
     std::vector<uint32_t> chunkSums;  ///< of numberSamples()
     bool newOnly = false;             ///< nothing has changed: older samples keep their verdicts
 
+    static constexpr size_t kBytesASample = sizeof(Vec2) + sizeof(Verdict) + 1 + sizeof(Vec3) + ReprojectedSamples::kBytesASample;
+
     bool isVerified(uint32_t i) const { return !newOnly || verdicts[i] == Verdict::New; }
     size_t bytes() const;
 };

@@ -2,6 +2,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/vectors.h"
 #include "reconstruct/stable/subpixel_mask.h"
 #include "trace/ray.h"
 
@@ -66,10 +67,14 @@ struct SampleSet {
     Vec3 radiance(size_t i) const { return indirect.empty() ? direct[i] : direct[i] + indirect[i]; }
     /// `withIndirect`: there is indirect light. What vectors hold is not defined then.
     void resize(size_t count, bool withIndirect) {
-        locations.resize(count), inWorld.resize(count), places.resize(count), flags.resize(count), notes.resize(count);
-        direct.resize(count), indirect.resize(withIndirect ? count : 0);
+        resizeAnew(locations, count), resizeAnew(inWorld, count), resizeAnew(places, count), resizeAnew(flags, count);
+        resizeAnew(notes, count), resizeAnew(direct, count), resizeAnew(indirect, withIndirect ? count : 0);
     }
-    size_t bytes() const { return (words.size() + first.size()) * 4 + size() * bytesASample(!indirect.empty()); }
+    /// That it holds.
+    size_t bytes() const {
+        return heldBytes(words) + heldBytes(first) + heldBytes(locations) + heldBytes(inWorld) + heldBytes(places) + heldBytes(flags) +
+               heldBytes(notes) + heldBytes(direct) + heldBytes(indirect);
+    }
     static constexpr size_t bytesASample(bool withIndirect) {
         return sizeof(SampleLocation) + sizeof(Vec2) + 1 + sizeof(SampleNote) + sizeof(Vec3) * (withIndirect ? 3 : 2);
     }

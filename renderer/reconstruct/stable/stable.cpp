@@ -27,10 +27,11 @@ void StableModule::describe(ParameterVisitor& v) {
 }
 
 void StableModule::resize(Extent2 extent) {
-    // Three frames of samples and what works on them. A quarter more than the target are held, most of them occluded.
+    // Three frames of samples and what works on them. A quarter more than the target are held, most of them occluded; room is
+    // made for an eighth more.
     constexpr uint64_t kBytesAPixel = 110;
-    constexpr uint64_t kBytesASample = 3 * SampleSet::bytesASample(true) + 82;
-    const auto samples = static_cast<uint64_t>(1.25 * density_.density * static_cast<double>(extent.area()));
+    constexpr uint64_t kBytesASample = 3 * SampleSet::bytesASample(true) + SampleFrame::kBytesASample;
+    const auto samples = static_cast<uint64_t>(1.125 * 1.25 * density_.density * static_cast<double>(extent.area()));
     checkMemory("the samples of stable ray tracing", kBytesAPixel * static_cast<uint64_t>(extent.area()) + kBytesASample * samples);
     extent_ = extent;
     forget();
@@ -56,6 +57,7 @@ RunResult StableModule::run(const FrameContext& context, Image& out) {
     if (!placeSamples(context, previous, step.next)) return RunResult::Stopped;
     frame_.newOnly = light.still && step.previous && step.previous->epsilon == verification_.epsilon;
     step.next.epsilon = verification_.epsilon;
+    if (!frame_.newOnly) step.next.meanFrames = 1;  // samples that were hidden may be seen now
     VerificationCounts counts;
     if (!trace(context, previous, light, samples, counts)) return RunResult::Stopped;
     if (!reconstruct(context, samples, out)) return RunResult::Stopped;
@@ -73,15 +75,16 @@ RunResult StableModule::run(const FrameContext& context, Image& out) {
 GatheringState StableModule::lightState(const FrameContext& context, const Kept* previous, Kept& next) const {
     const Changes& changes = context.changes;
     GatheringState state;
-    state.still = next.still = !changes.any();
+    state.still = !changes.any();
+    next.averaged = state.still && gathering_.converge;
     state.lightsMoved = changes.lights;
     // Without a frame before, all samples are new: nothing in them is old.
     constexpr uint64_t kEver = std::numeric_limits<uint64_t>::max() / 2;
     next.steadyFrames = !previous ? kEver : changes.objects || changes.lights ? 0 : previous->steadyFrames + 1;
-    const bool stopped = state.still && previous && !previous->still;
+    const bool stopped = next.averaged && previous && !previous->averaged;
     const bool holdsOld = static_cast<float>(next.steadyFrames) < 4 / gathering_.indirectAlpha;
-    state.restart = changes.materials || changes.sampling || (gathering_.converge && stopped && holdsOld);
-    next.meanFrames = state.still && previous && !state.restart ? previous->meanFrames + 1 : 1;
+    state.restart = changes.materials || changes.sampling || (stopped && holdsOld);
+    next.meanFrames = next.averaged && previous && !state.restart ? previous->meanFrames + 1 : 1;
     return state;
 }
 

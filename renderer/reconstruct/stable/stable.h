@@ -25,7 +25,8 @@ namespace lumi {
 /// - Samples of the same triangle count as visible wherever the ray meets it, whatever epsilon; those on the body of a
 ///   light if they face the ray as the hit does. All rays to a sample pass the same blended surfaces or stop at them, so
 ///   that it is not occluded now and then: a still view of such converges to samples that have each drawn once.
-/// - A sample that its ray does not find is evicted. If all of a pixel are occluded the first moves to what occludes it.
+/// - A sample that its ray does not find is evicted. If all of a pixel are occluded the first moves to what occludes it,
+///   but not while nothing changes: verdicts stay then.
 /// - The density's tolerance is 0.75, not 1: a view that zooms in spreads samples, and at 1 the density may fall far below
 ///   the target, for pixels act only where the window is empty. At 0.75 it falls by 13% while the view comes nearer by 1% a
 ///   frame, and by 18% at 3%; at 0.5 by less, but two to eight times as many samples are exchanged, each a step in the image.
@@ -69,7 +70,7 @@ private:
         SampleSet samples;
         uint64_t meanFrames = 0;    ///< whose paths are in the mean of each visible sample
         uint64_t steadyFrames = 0;  ///< since a light or an object moved
-        bool still = false;         ///< nothing had changed
+        bool averaged = false;      ///< nothing had changed, and light was the mean of its paths
         float epsilon = 0;          ///< that verdicts were found with
     };
     bool placeSamples(const FrameContext& context, const SampleSet& previous, Kept& next);

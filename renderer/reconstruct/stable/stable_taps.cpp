@@ -84,11 +84,22 @@ void drawBitmasks(const SampleSet& samples, Image* out) {
     });
 }
 
+/// 1: no visible sample in the pixel; 2: nor in its 3x3 pixels.
+float holeCode(const SampleSet& samples, size_t pixel) {
+    if (subpixel::visible(samples.words[pixel])) return 0;
+    const auto width = static_cast<size_t>(samples.extent.width), height = static_cast<size_t>(samples.extent.height);
+    const size_t x = pixel % width, y = pixel / width;
+    for (size_t v = y - std::min<size_t>(y, 1); v <= std::min(y + 1, height - 1); ++v)
+        for (size_t u = x - std::min<size_t>(x, 1); u <= std::min(x + 1, width - 1); ++u)
+            if (subpixel::visible(samples.words[v * width + u])) return 1;
+    return 2;
+}
+
 }  // namespace
 
 std::vector<Tap> stableTaps() {
     return {
-        {.name = "subpixels", .channels = "RGB", .colourMap = "none", .help = "The 4x4 sub-pixels of the pixels around the one under the pointer, or around the middle, each drawn as a pixel: visible samples blue, occluded red (fig. 6)"},
+        {.name = "subpixels", .channels = "RGB", .colourMap = "none", .help = "The 4x4 sub-pixels of the pixels around the middle, each drawn as a pixel: visible samples blue, occluded red (fig. 6). Those of other pixels are seen in bitmasks, zoomed in"},
         {.name = "bitmasks", .channels = "RGBXY", .colourMap = "none", .help = "Visible samples as blue, occluded and just evicted ones as red, four of them as full colour; zoomed in, the window shows each pixel's 4x4 sub-pixels (fig. 6). X and Y are the occupancy and the occlusion bits"},
         {.name = "occupancy", .channels = "Y", .rangeHigh = 65535, .help = "The 16 occupancy bits as a number; bit b is sub-pixel b, in rows from the top left"},
         {.name = "occlusion", .channels = "Y", .rangeHigh = 65535, .help = "The 16 occlusion bits as a number; those of samples that were just evicted are set too"},
@@ -96,7 +107,7 @@ std::vector<Tap> stableTaps() {
         {.name = "density", .channels = "Y", .unit = "samples/px", .rangeHigh = 4, .help = "Local density d after reprojection: visible samples in the 2x2 pixels around (sec. 4.2)"},
         {.name = "changes", .channels = "RGB", .colourMap = "none", .help = "Samples that the analysis added (green) and removed (red), as in fig. 4"},
         {.name = "age", .channels = "Y", .unit = "frames", .rangeHigh = 64, .help = "Mean age of the pixel's visible samples"},
-        {.name = "holes", .channels = "Y", .rangeHigh = 2, .colourMap = "magma", .help = "1: no visible sample in the pixel; 2: none in its 3x3 pixels, filled from neighbours"},
+        {.name = "holes", .channels = "Y", .rangeHigh = 2, .colourMap = "magma", .help = "1: no visible sample in the pixel; 2: nor in its 3x3 pixels. Where the filter has none in reach the pixel is the mean of those around it"},
         {.name = "verdicts", .channels = "Y", .rangeHigh = 5, .colourMap = "turbo", .help = "The worst verdict on the pixel's samples: 0 none, 1 visible, 2 new, 3 occluded, 4 moved to what occludes it, 5 missed and evicted"},
         {.name = "indirectCount", .channels = "Y", .unit = "paths", .rangeHigh = 16, .help = "Mean number of paths in the indirect light of the pixel's visible samples"},
         {.name = "lanes", .channels = "Y", .unit = "rays", .rangeHigh = 8, .help = "Lanes of the packets of visibility rays that went to the pixel, idle ones included"},
@@ -124,8 +135,7 @@ void drawSubpixels(const SampleSet& samples, Pixel centre, Image& out) {
 
 void StableModule::keepTaps(const FrameContext& context, const SampleSet& samples) {
     if (context.wantedTaps.empty()) return;
-    if (Image* out = taps_.target("subpixels"))
-        drawSubpixels(samples, context.inspected.value_or(Pixel{extent_.width / 2, extent_.height / 2}), *out);
+    if (Image* out = taps_.target("subpixels")) drawSubpixels(samples, {extent_.width / 2, extent_.height / 2}, *out);
     drawBitmasks(samples, taps_.target("bitmasks"));
     fill(taps_.target("occupancy"), extent_, [&](size_t p) { return static_cast<float>(subpixel::occupied(samples.words[p])); });
     fill(taps_.target("occlusion"), extent_, [&](size_t p) { return static_cast<float>(subpixel::occluded(samples.words[p])); });
@@ -133,9 +143,7 @@ void StableModule::keepTaps(const FrameContext& context, const SampleSet& sample
     taps_.keep("density", localDensity_);
     drawChanges(frame_, extent_, taps_.target("changes"));
     fill(taps_.target("age"), extent_, [&](size_t p) { return meanOfVisible(frame_, samples, p, [](const SampleNote& n) { return n.age; }); });
-    fill(taps_.target("holes"), extent_, [&](size_t p) {
-        return !(weights_.data()[p] > 0) ? 2.0f : subpixel::visible(samples.words[p]) ? 0.0f : 1.0f;
-    });
+    fill(taps_.target("holes"), extent_, [&](size_t p) { return holeCode(samples, p); });
     fill(taps_.target("verdicts"), extent_, [&](size_t p) { return verdictCode(frame_, samples, p); });
     fill(taps_.target("indirectCount"), extent_,
          [&](size_t p) { return meanOfVisible(frame_, samples, p, [](const SampleNote& n) { return n.indirectCount; }); });

@@ -21,7 +21,7 @@ void VerificationSettings::describe(ParameterVisitor& v) {
     v.choice("batches", batches,
              {.label = "Ray batches",
               .options = {"dense", "per-pixel"},
-              .help = "Which visibility rays are traced together: all samples in one list without gaps, or the k-th samples of "
+              .help = "Which visibility rays are traced together: all samples of a block of pixels in one list without gaps, or the k-th samples of "
                       "16 pixels with idle lanes as in the paper, whose sec. 7 leaves the balancing open"});
 }
 

@@ -6,8 +6,8 @@ namespace lumi {
 
 /// How samples are verified [DalCorso17, sec. 4.3].
 struct VerificationSettings {
-    /// What rays are traced together. Dense: the samples of all pixels in one list without gaps, tile after tile, the load
-    /// balancing that sec. 7 of the paper expects a gain from. PerPixel: as the paper, each pixel goes through its own
+    /// What rays are traced together. Dense: the samples of a block of pixels in one list without gaps, block after block, the
+    /// load balancing that sec. 7 of the paper expects a gain from. PerPixel: as the paper, each pixel goes through its own
     /// samples; packets are the k-th samples of 16 pixels and have idle lanes where a pixel has fewer.
     enum class Batches { Dense, PerPixel };
 
