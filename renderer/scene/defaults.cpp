@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <unordered_set>
+#include <utility>
 
 #include "base/parallel.h"
 #include "scene/deform.h"
@@ -134,13 +135,16 @@ bool illuminates(const Material& material) {
     return material.emits() && (!material.emissionTexture || maxComponent(material.emission) > 1);
 }
 
-FirstHits lookAround(const Scene& scene, const Vec3& origin) {
+FirstHits lookAround(const Scene& scene, const Vec3& origin, const std::stop_token& stop = {}) {
     const std::array<Vec3, kRays> directions = spreadDirections();
     const NodePose pose = poseNodes(scene, 0.0f);
     FirstHits hits;
     MeshBounds meshBounds;
-    for (const Instance& instance : scene.instances)
-        traceInstance(scene, pose, instance, origin, directions, meshBounds, hits);
+    constexpr size_t kPollStride = 1024;
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
+        if (i % kPollStride == 0) checkLoadStop(scene, stop);
+        traceInstance(scene, pose, scene.instances[i], origin, directions, meshBounds, hits);
+    }
     return hits;
 }
 
@@ -179,12 +183,12 @@ float enclosure(const Scene& scene, const Vec3& origin) {
     return enclosureOf(lookAround(scene, origin));
 }
 
-Camera defaultCamera(const Scene& scene) {
+Camera defaultCamera(const Scene& scene, std::stop_token stop) {
     Camera camera;
-    const Bounds3 bounds = boundsOverTime(scene);
+    const Bounds3 bounds = boundsOverTime(scene, stop);
     if (bounds.empty() || !isFinite(bounds.size())) return camera;
     const Vec3 centre = bounds.centre(), half = glm::max(0.5f * bounds.size(), Vec3(1e-6f));
-    const FirstHits hits = lookAround(scene, centre);
+    const FirstHits hits = lookAround(scene, centre, stop);
     if (enclosureOf(hits) < 0.75f || !standInside(centre, half, hits, camera)) {
         const Vec3 from = glm::normalize(Vec3(0.35f, 0.22f, 1));
         const Mat3 axes(lookAt(from, Vec3(0)));
@@ -214,8 +218,8 @@ bool hasLight(const Scene& scene) {
     return false;
 }
 
-void addDefaults(Scene& scene, MessageLog& log, bool allowSky) {
-    if (scene.cameras.empty()) scene.cameras.push_back({defaultCamera(scene), -1, {}, Interpolation::CatmullRom});
+void addDefaults(Scene& scene, MessageLog& log, bool allowSky, std::stop_token stop) {
+    if (scene.cameras.empty()) scene.cameras.push_back({defaultCamera(scene, std::move(stop)), -1, {}, Interpolation::CatmullRom});
     if (!allowSky || hasLight(scene)) return;
     scene.environment.image = std::make_shared<const Image>(makeDefaultSky());
     log.warning(scene.path + ": no light and no emission; lit by the built-in sky");

@@ -1,4 +1,6 @@
 #pragma once
+#include <stop_token>
+
 #include "base/messages.h"
 #include "scene/scene.h"
 
@@ -9,7 +11,8 @@ namespace lumi {
 /// stands there and looks along the longer horizontal axis, or, if the room is open at one end of it, stands at that
 /// end. Otherwise, and if something is right before it there, it frames the bounds from the front, a little from the
 /// right and above. The bounds are those of boundsOverTime(): things stay in the picture while animation plays.
-Camera defaultCamera(const Scene& scene);
+/// Throws Error(Interrupted) once stopped.
+Camera defaultCamera(const Scene& scene, std::stop_token stop = {});
 
 /// Share of directions from `origin` in which the first thing met shows its front, of a few dozen spread evenly over the
 /// sphere.
@@ -20,6 +23,7 @@ float enclosure(const Scene& scene, const Vec3& origin);
 bool hasLight(const Scene& scene);
 
 /// Gives the scene a camera if it has none and, if `allowSky` and nothing shines, the built-in sky and a warning.
-void addDefaults(Scene& scene, MessageLog& log, bool allowSky);
+/// Throws Error(Interrupted) once stopped.
+void addDefaults(Scene& scene, MessageLog& log, bool allowSky, std::stop_token stop = {});
 
 }  // namespace lumi

@@ -81,7 +81,7 @@ std::shared_ptr<const Scene> loadScene(const fs::path& path, MessageLog& log, co
     if (scene->path.empty()) scene->path = path.string();
     addLightBodies(*scene);
     poseScene(scene, {}, nullptr, options.stop);  // what cannot be posed is not taken over
-    addDefaults(*scene, log, !ours);
+    addDefaults(*scene, log, !ours, options.stop);
     if (options.progress) options.progress(1, "done");
     return scene;
 }

@@ -3,6 +3,7 @@
 #include <set>
 #include <vector>
 
+#include "base/error.h"
 #include "scene/deform.h"
 #include "scene/reach.h"
 
@@ -13,6 +14,7 @@ constexpr int kMoments = 17, kFewMoments = 5;
 constexpr size_t kMuch = size_t(1) << 18;  ///< nodes and vertices of a pose from which on fewer moments are looked at
 constexpr size_t kMostLengths = 4;
 constexpr float kMostGrowth = 4;
+constexpr size_t kPollStride = 4096;  ///< instances between two looks at the stop
 
 bool isSkinned(const Instance& instance) { return instance.skin >= 0 && !instance.mesh->skin.empty(); }
 
@@ -63,13 +65,26 @@ void eachBounds(const Scene& scene, const NodePose& pose, MeshBounds& meshBounds
     }
 }
 
-Bounds3 boundsOverTime(const Scene& scene) {
+void checkLoadStop(const Scene& scene, const std::stop_token& stop) {
+    if (stop.stop_requested()) throw Error(ErrorKind::Interrupted, {"loading was stopped", scene.path, "", ""});
+}
+
+Bounds3 boundsOverTime(const Scene& scene, std::stop_token stop) {
     MeshBounds meshBounds;
     Bounds3 all;
-    eachBounds(scene, poseNodes(scene, 0.0f), meshBounds, [&](const Bounds3& box) { all.extend(box); });
+    size_t seen = 0;
+    const auto poll = [&] {
+        if (seen++ % kPollStride == 0) checkLoadStop(scene, stop);
+    };
+    eachBounds(scene, poseNodes(scene, 0.0f), meshBounds, [&](const Bounds3& box) {
+        poll();
+        all.extend(box);
+    });
     float most = kMostGrowth * all.radius();
     for (const float moment : momentsOf(scene)) {
+        checkLoadStop(scene, stop);
         eachBounds(scene, poseNodes(scene, moment), meshBounds, [&](const Bounds3& box) {
+            poll();
             if (box.empty() || !isInReach(box.lower) || !isInReach(box.upper)) return;
             Bounds3 both = all;
             both.extend(box);

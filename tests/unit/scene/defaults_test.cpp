@@ -7,6 +7,7 @@
 #include "scene/pose_bounds.h"
 #include "scene/procedural/primitives.h"
 #include "scene/sky.h"
+#include "support/expect_error.h"
 
 namespace lumi::test {
 namespace {
@@ -141,6 +142,15 @@ TEST(DefaultCamera, LosesWhatGoesFarRatherThanMakingAllASpeck) {
     animate(grows, AnimatedProperty::Scale, 3, {0, 0, 0, 0, 0, 0, 1, 1, 1}, 1);
     EXPECT_GT(boundsOverTime(grows).radius(), 0.1f);
     EXPECT_LT(glm::distance(defaultCamera(grows).eye, Vec3(0)), 10);
+}
+
+TEST(DefaultCamera, StopsWithTheLoad) {
+    Scene scene = sceneOf(boxMesh(Vec3(1)));
+    std::stop_source source;
+    source.request_stop();
+    MessageLog log;
+    expectError(ErrorKind::Interrupted, [&] { addDefaults(scene, log, true, source.get_token()); }, {"made.obj", "stopped"});
+    EXPECT_TRUE(scene.cameras.empty());
 }
 
 TEST(DefaultCamera, EnclosureCountsDirections) {
