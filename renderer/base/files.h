@@ -18,7 +18,15 @@ std::string readTextFile(const std::filesystem::path& path, uint64_t limitBytes 
 void writeFileAtomically(const std::filesystem::path& path, std::span<const uint8_t> bytes);
 void writeFileAtomically(const std::filesystem::path& path, std::string_view text);
 
-/// `path`, or `stem-1.ext`, `stem-2.ext`, ... : the first that does not exist.
+/// The same, but over no other file: under `path`, or `stem-1.ext`, `stem-2.ext`, ... : the first that is free once all is
+/// written. Returns it.
+std::filesystem::path writeNewFile(const std::filesystem::path& path, std::span<const uint8_t> bytes);
+
+/// Creates the folder of `path` if needed. Throws as writeFileAtomically() would: nothing could be written there, the name is
+/// too long.
+void requireWritable(const std::filesystem::path& path);
+
+/// `path`, or `stem-1.ext`, `stem-2.ext`, ... : the first that does not exist, as far as can be seen.
 std::filesystem::path unusedPath(const std::filesystem::path& path);
 
 /// folder / name, normalised, where a file names another one; nothing if that leads out of `folder` (an absolute name,

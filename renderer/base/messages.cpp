@@ -7,14 +7,16 @@ namespace lumi {
 
 void MessageLog::add(Severity severity, std::string text) {
     std::function<void(const Message&)> listener;
-    Message message{severity, std::move(text), 1};
+    Message message{severity, std::move(text), 1, 0};
     {
         std::lock_guard lock(mutex_);
+        message.serial = ++serial_;
         const auto same = std::find_if(messages_.begin(), messages_.end(), [&](const Message& m) {
             return m.severity == severity && m.text == message.text;
         });
         if (same != messages_.end()) {
             ++same->repeats;
+            same->serial = message.serial;
             return;
         }
         messages_.push_back(message);
@@ -24,8 +26,16 @@ void MessageLog::add(Severity severity, std::string text) {
 }
 
 std::vector<Message> MessageLog::messages() const {
+    std::unique_lock lock(mutex_);
+    std::vector<Message> latest = messages_;
+    lock.unlock();
+    std::sort(latest.begin(), latest.end(), [](const Message& a, const Message& b) { return a.serial < b.serial; });
+    return latest;
+}
+
+uint64_t MessageLog::serial() const {
     std::lock_guard lock(mutex_);
-    return messages_;
+    return serial_;
 }
 
 std::vector<std::string> MessageLog::warnings() const {
@@ -39,6 +49,7 @@ std::vector<std::string> MessageLog::warnings() const {
 void MessageLog::clear() {
     std::lock_guard lock(mutex_);
     messages_.clear();
+    ++serial_;
 }
 
 void MessageLog::setListener(std::function<void(const Message&)> listener) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -12,6 +13,7 @@ struct Message {
     Severity severity = Severity::Info;
     std::string text;
     int repeats = 1;  ///< how often the same text was reported
+    uint64_t serial = 0;  ///< MessageLog::serial() when it was reported last
 };
 
 /// Everything the engine wants to tell a person. The library never prints: programs read this, or set a listener.
@@ -23,8 +25,12 @@ public:
     void error(std::string text) { add(Severity::Error, std::move(text)); }
     void add(Severity severity, std::string text);
 
+    /// In the order in which they were reported last.
     std::vector<Message> messages() const;
+    /// In the order in which they were reported first.
     std::vector<std::string> warnings() const;
+    /// Grows with each report, repeated ones too, and when the log is cleared.
+    uint64_t serial() const;
     void clear();
 
     /// Called for each new text, on the thread that reports it, outside the log's lock.
@@ -32,7 +38,8 @@ public:
 
 private:
     mutable std::mutex mutex_;
-    std::vector<Message> messages_;
+    std::vector<Message> messages_;  ///< in the order in which they were reported first
+    uint64_t serial_ = 0;
     std::function<void(const Message&)> listener_;
 };
 

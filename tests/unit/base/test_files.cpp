@@ -67,6 +67,46 @@ TEST(Files, UnusedPathsCount) {
     EXPECT_EQ(unusedPath(folder / "shot.png"), folder / "shot-2.png");
 }
 
+TEST(Files, NewFilesTakeNoOthersName) {
+    const TemporaryFolder folder;
+    const auto write = [&](const std::string& text) {
+        for (int round = 0; round < 20; ++round)
+            writeNewFile(folder / "shot.png", {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+    };
+    std::thread first(write, "a"), second(write, "b");
+    first.join(), second.join();
+    int as = 0, bs = 0;
+    for (const auto& entry : fs::directory_iterator(folder.path())) (readTextFile(entry.path()) == "a" ? as : bs) += 1;
+    EXPECT_EQ(as, 20);
+    EXPECT_EQ(bs, 20);
+    EXPECT_TRUE(fs::exists(folder / "shot.png"));
+    EXPECT_TRUE(fs::exists(folder / "shot-39.png"));
+}
+
+// File systems take names of 255 bytes, of which the temporary file must not need more.
+TEST(Files, LongNamesAreWritten) {
+    const TemporaryFolder folder;
+    const std::string longest(255, 'n');
+    requireWritable(folder / longest);
+    writeFileAtomically(folder / longest, "x");
+    EXPECT_EQ(readTextFile(folder / longest), "x");
+    expectError(ErrorKind::Usage, [&] { requireWritable(folder / (longest + "n")); }, {"too long"});
+    expectError(ErrorKind::Usage, [&] { writeFileAtomically(folder / (longest + "n"), "x"); }, {"too long"});
+    EXPECT_NO_THROW(unusedPath(folder / (longest + "n")));
+    int entries = 0;
+    for (const auto& entry : fs::directory_iterator(folder.path())) entries += entry.exists() ? 1 : 0;
+    EXPECT_EQ(entries, 1);
+}
+
+TEST(Files, WhatCannotBeWrittenIsKnownBefore) {
+    const TemporaryFolder folder;
+    requireWritable(folder / "a/b/c.exr");
+    EXPECT_TRUE(fs::is_empty(folder / "a/b")) << "the folder is there, and nothing in it";
+    writeFileAtomically(folder / "file", "x");
+    expectError(ErrorKind::Usage, [&] { requireWritable(folder / "file/x.exr"); }, {"file/x.exr", "folder cannot be created", "Not a directory"});
+    expectError(ErrorKind::Usage, [] { requireWritable("/proc/nothing/x.exr"); }, {"/proc/nothing/x.exr", "folder cannot be created"});
+}
+
 TEST(Files, NamesInAFileStayInItsFolder) {
     EXPECT_EQ(pathInside("/models", "a/b.png"), fs::path("/models/a/b.png"));
     EXPECT_EQ(pathInside("/models", "a/../b.png"), fs::path("/models/b.png"));

@@ -23,11 +23,26 @@ TEST(Messages, RepeatedTextsAreCountedAndHeardOnce) {
     log.error("a");
     EXPECT_EQ(heard, 3);
     ASSERT_EQ(log.messages().size(), 3u);
-    EXPECT_EQ(log.messages()[0].repeats, 2);
+    EXPECT_EQ(log.messages()[1].repeats, 2);
     EXPECT_EQ(log.messages()[2].severity, Severity::Error);
     EXPECT_EQ(log.warnings(), std::vector<std::string>{"a"});
     log.clear();
     EXPECT_TRUE(log.messages().empty());
+}
+
+TEST(Messages, WhatIsReportedAgainIsTheLatest) {
+    MessageLog log;
+    log.warning("a");
+    log.warning("b");
+    const uint64_t before = log.serial();
+    log.warning("a");
+    EXPECT_GT(log.serial(), before);
+    ASSERT_EQ(log.messages().size(), 2u);
+    EXPECT_EQ(log.messages().back().text, "a");
+    EXPECT_EQ(log.messages().back().serial, log.serial());
+    EXPECT_EQ(log.warnings(), (std::vector<std::string>{"a", "b"})) << "as they came first, whoever repeats them";
+    log.clear();
+    EXPECT_GT(log.serial(), before + 1) << "a list that is empty is another one";
 }
 
 TEST(Messages, ManyThreadsMayReport) {
