@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <future>
 
+#include "base/files.h"
 #include "image/png.h"
 
 namespace lumi {
@@ -34,8 +35,7 @@ void PictureWriter::write(Image8 picture, const std::filesystem::path& path) {
     });
     pending_.push_back(std::async(std::launch::async, [this, path, image = std::move(picture)] {
         try {
-            writePng(path, image);
-            log_.info("Saved " + path.string());
+            log_.info("Saved " + writeNewFile(path, encodePng(image)).string());
         } catch (const std::exception& error) {
             log_.error(error.what());
         }

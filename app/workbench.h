@@ -29,7 +29,7 @@ private:
 class PictureWriter {
 public:
     explicit PictureWriter(MessageLog& log) : log_(log) {}
-    /// Success and failure are messages.
+    /// Over no other file: see writeNewFile(). Success and failure are messages.
     void write(Image8 picture, const std::filesystem::path& path);
 
 private:

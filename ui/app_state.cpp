@@ -12,12 +12,44 @@ void AppState::beginFrame() {
     const auto latest = session.snapshot();
     if (latest && (!snapshot || latest->serial != snapshot->serial)) snapshot = latest;
     metrics.offer(snapshot);
-    if (resumeAfterReference && !metrics.reference().working) {
-        resumeAfterReference = false;
-        session.setRendering(true);
-    }
+    followReference();
+    takeOrbitTarget();
     if (snapshot && pinned && (pinned->x >= snapshot->extent.width || pinned->y >= snapshot->extent.height))
         pinned.reset();
+}
+
+void AppState::makeReference(uint64_t samples) {
+    metrics.makeReference(document.document(), samples);
+    referenceOf_ = document.document().loadedScene();
+    makesReference_ = true;
+    // Two tracers at once would be slower than one after the other.
+    resumeAfterReference = resumeAfterReference || session.rendering();
+    session.setRendering(false);
+}
+
+/// A reference of the scene before serves nothing once another is open; what waited for one goes on.
+void AppState::followReference() {
+    const bool stale = document.present() && referenceOf_.lock() != document.document().loadedScene();
+    if (makesReference_ && stale) metrics.cancelReference();
+    if (metrics.reference().working) return;
+    makesReference_ = false;
+    if (resumeAfterReference) setRendering(true);
+}
+
+/// Makes the surface that was asked for what the camera orbits around: a point straight ahead, as far away.
+void AppState::takeOrbitTarget() {
+    if (!orbitTarget.valid() || orbitTarget.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    std::optional<Vec3> point;
+    try {
+        point = orbitTarget.get();
+    } catch (const std::future_error&) {  // it could not be looked for: that is a message
+    }
+    if (!point || !document.present()) return;
+    Camera camera = document.camera();
+    const Vec3 forward = glm::normalize(camera.target - camera.eye);
+    camera.target = camera.eye + forward * std::max(glm::dot(*point - camera.eye, forward), 1e-3f);
+    setCamera(camera);
+    session.endEdit();
 }
 
 bool AppState::showsReference() const {
@@ -104,8 +136,18 @@ void AppState::setCamera(const Camera& camera) {
     }
 }
 
-void AppState::reset(const std::string& id) {
-    if (document.present()) setOnce(id, document.document().initial(id));
+void AppState::reset(const std::vector<std::string>& ids) {
+    try {
+        session.reset(ids);
+    } catch (const Error& error) {
+        log.error(error.what());
+    }
+    session.endEdit();
+}
+
+void AppState::setRendering(bool on) {
+    resumeAfterReference = false;
+    session.setRendering(on);
 }
 
 void AppState::open(const std::filesystem::path& path) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <filesystem>
+#include <future>
 #include <map>
 #include <optional>
 #include <string>
@@ -32,6 +33,7 @@ struct AppState {
     bool leftDragOrbits = true;
     float flySpeed = 1;
     bool flying = false;  ///< by keys, in the last frame
+    std::future<std::optional<Vec3>> orbitTarget;  ///< asked for: what the camera is to orbit around
     std::optional<Pixel> hovered, pinned;
     Vec2 hoveredPaneSize{1};
 
@@ -82,10 +84,17 @@ struct AppState {
     void set(const std::string& id, const ParameterValue& value);
     void setOnce(const std::string& id, const ParameterValue& value);
     void setCamera(const Camera& camera);
-    void reset(const std::string& id);
+    void reset(const std::vector<std::string>& ids);
+    /// Pauses or goes on as the user says: what waits for a reference waits no more.
+    void setRendering(bool on);
+    void makeReference(uint64_t samples);
     void open(const std::filesystem::path& path);
 
 private:
+    void takeOrbitTarget();
+    void followReference();
+    std::weak_ptr<const Scene> referenceOf_;  ///< as loaded: what a reference is made of
+    bool makesReference_ = false;
     std::map<std::string, std::vector<BufferEntry>> buffers_;
     std::shared_ptr<const PosedScene> buffersOf_;
 };

@@ -5,13 +5,19 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/files.h"
 #include "reconstruct/catalog.h"
 #include "ui/panels/panels.h"
 
 namespace lumi {
 
 namespace {
+
+/// `<folder>/<scene>`: what the names of captures begin with.
+std::filesystem::path captureStem(const AppState& state) {
+    const Scene* scene = state.document.scene();
+    const std::filesystem::path name = scene ? std::filesystem::path(scene->path).stem() : std::filesystem::path();
+    return state.captures / (name.empty() ? "scene" : name);
+}
 
 void cycleModule(AppState& state, int by) {
     const auto catalog = moduleCatalog();
@@ -57,11 +63,10 @@ void swapPanes(AppState& state) {
 }
 
 void resetAll(AppState& state) {
-    std::vector<std::pair<std::string, ParameterValue>> values;
+    std::vector<std::string> ids;
     for (const std::string& id : state.document.changedIds())
-        values.emplace_back(id, state.document.document().initial(id));
-    state.session.setAll(values);
-    state.session.endEdit();
+        if (id != "time") ids.push_back(id);  // a moment that is looked at is no setting
+    state.reset(ids);
 }
 
 void recallBookmark(AppState& state, int index) {
@@ -134,10 +139,7 @@ void runPictureCommand(AppState& state, UiCommand command, int index) {
 }
 
 void makeReference(AppState& state) {
-    state.metrics.makeReference(state.document.document(), referenceSamples(state));
-    // Two tracers at once would be slower than one after the other.
-    state.resumeAfterReference = state.resumeAfterReference || state.session.rendering();
-    state.session.setRendering(false);
+    state.makeReference(referenceSamples(state));
     state.tab = PanelTab::Measure;
 }
 
@@ -167,12 +169,14 @@ void runTimeCommand(AppState& state, UiCommand command) {
             session.setPlaying(!session.playing());
             break;
         case UiCommand::PauseRendering:
-            session.setRendering(!session.rendering());
+            state.setRendering(!session.rendering());
             break;
         case UiCommand::Step:
+            state.setRendering(false);
             session.step();
             break;
         case UiCommand::StepBack:
+            state.setRendering(false);
             session.stepBack();
             break;
         case UiCommand::Restart:
@@ -213,10 +217,10 @@ void runWindowCommand(AppState& state, UiCommand command, int index) {
             state.browserOpen = !state.browserOpen;
             break;
         case UiCommand::SavePicture:
-            state.session.saveView(state.activePane, capturePath(state, "png"));
+            state.session.captureView(state.activePane, captureStem(state), "png");
             break;
         case UiCommand::SaveBuffers:
-            state.session.saveView(state.activePane, capturePath(state, "exr"));
+            state.session.captureView(state.activePane, captureStem(state), "exr");
             break;
         case UiCommand::SaveWindow:
             state.windowShotWanted = true;
@@ -256,12 +260,6 @@ void runWindowCommand(AppState& state, UiCommand command, int index) {
     }
 }
 
-std::string sceneStem(const AppState& state) {
-    const Scene* scene = state.document.scene();
-    const std::string name = scene ? std::filesystem::path(scene->path).stem().string() : std::string();
-    return name.empty() ? "scene" : name;
-}
-
 bool worksWithoutScene(UiCommand command) {
     return command == UiCommand::OpenScene || command == UiCommand::Help || command == UiCommand::Close ||
            command == UiCommand::Quit || command == UiCommand::ToggleUi || command == UiCommand::ToggleMessages ||
@@ -277,7 +275,7 @@ void runCommand(AppState& state, UiCommand command, int index) {
         runTimeCommand(state, command);
         runMeasureCommand(state, command);
         runWindowCommand(state, command, index);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
         state.log.error(error.what());
     }
 }
@@ -291,14 +289,8 @@ std::string cameraAsCommandLine(const Camera& camera) {
 }
 
 std::filesystem::path windowShotPath(const AppState& state) {
-    return unusedPath(state.captures / (sceneStem(state) + ".window.png"));
-}
-
-std::filesystem::path capturePath(const AppState& state, const std::string& extension) {
-    const auto frame = state.snapshot ? std::max<FrameNumber>(state.snapshot->frame, 0) : 0;
-    return unusedPath(state.captures / fmt::format("{}.{}.{}.{:04}.{}", sceneStem(state),
-                                                   state.module(state.activePane), state.buffer(state.activePane),
-                                                   frame, extension));
+    std::filesystem::path path = captureStem(state);
+    return path += ".window.png";
 }
 
 }  // namespace lumi

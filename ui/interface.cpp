@@ -109,7 +109,7 @@ void Interface::build(Extent2 target, float elapsedSeconds) {
     ImGui::SetCurrentContext(imgui_);
     ImGuiIO& io = ImGui::GetIO();
     framesToSettle_ = input_.empty() ? std::max(framesToSettle_ - 1, 0) : kSettlingFrames;
-    messagesSeen_ = state_.log.messages().size();
+    messagesSeen_ = state_.log.serial();
     revisionSeen_ = state_.session.revision();
     checkSeen_ = state_.session.signalCheck();
     measuredSeen_ = state_.metrics.latest();
@@ -143,7 +143,8 @@ bool Interface::busy() const {
         return std::any_of(std::begin(states), std::end(states), [](bool down) { return down; });
     };
     return framesToSettle_ > 0 || held(io.MouseDown) || held(io.KeysDown) || state_.session.loadStatus().loading ||
-           state_.session.checkingSignals() || state_.session.steppingBack() || state_.metrics.reference().working;
+           state_.session.checkingSignals() || state_.session.steppingBack() || state_.metrics.reference().working ||
+           state_.orbitTarget.valid();
 }
 
 bool Interface::wantsFrame() const {
@@ -151,7 +152,7 @@ bool Interface::wantsFrame() const {
     const auto latest = state_.session.snapshot();
     if (latest && (!state_.snapshot || latest->serial != state_.snapshot->serial)) return true;
     if (state_.session.signalCheck() != checkSeen_ || state_.metrics.latest() != measuredSeen_) return true;
-    return state_.log.messages().size() != messagesSeen_ || state_.session.revision() != revisionSeen_;
+    return state_.log.serial() != messagesSeen_ || state_.session.revision() != revisionSeen_;
 }
 
 PointerShape Interface::pointer() const {

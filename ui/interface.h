@@ -59,7 +59,7 @@ private:
     ImagePainter painter_;
     std::vector<PanePicture> pictures_;
     int framesToSettle_ = 0;  ///< frames still wanted after the last event: hovers, popups, layout
-    size_t messagesSeen_ = 0;
+    uint64_t messagesSeen_ = 0;
     uint64_t revisionSeen_ = 0;
     std::shared_ptr<const SignalCheck> checkSeen_;
     std::shared_ptr<const LiveMeasurement> measuredSeen_;

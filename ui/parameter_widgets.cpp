@@ -205,7 +205,7 @@ int parameterRows(AppState& state, const std::string& prefix, const std::string&
         ++count;
         const ParameterEdit edit = parameterRow(info, state.document.changed(info.id));
         if (edit.value) state.set(info.id, *edit.value);
-        if (edit.reset) state.reset(info.id);
+        if (edit.reset) state.reset({info.id});
         if (edit.finished) state.session.endEdit();
     }
     return count;

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "params/json_text.h"
 
 namespace lumi {
 
@@ -70,7 +71,7 @@ void savePreferences(const AppState& state, const std::filesystem::path& path) {
     for (const auto& [scene, list] : state.bookmarksByScene)
         if (const json stored = bookmarksJson(list); !stored.empty()) bookmarks[scene] = stored;
     try {
-        writeFileAtomically(path, json{{"version", 1}, {"recent", recent}, {"bookmarks", bookmarks}, {"check-scenes", state.checkScenes}}.dump(1));
+        writeFileAtomically(path, jsonText(json{{"version", 1}, {"recent", recent}, {"bookmarks", bookmarks}, {"check-scenes", state.checkScenes}}, 1));
     } catch (const std::exception& error) {
         state.log.warning(error.what());
     }

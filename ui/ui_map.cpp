@@ -1,4 +1,5 @@
 #include "ui/ui_map.h"
+#include "params/json_text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -18,7 +19,7 @@ std::string UiMap::json() const {
                         {"y", item.lower.y},
                         {"width", item.upper.x - item.lower.x},
                         {"height", item.upper.y - item.lower.y}});
-    return nlohmann::json{{"items", list}}.dump(1);
+    return jsonText(nlohmann::json{{"items", list}}, 1);
 }
 
 }  // namespace lumi

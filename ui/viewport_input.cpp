@@ -88,21 +88,6 @@ std::optional<Pixel> pixelUnderMouse(const AppState& state, const ImRect& pane) 
     return pixel;
 }
 
-/// Makes the surface under the pointer what the camera orbits around.
-void pickTarget(AppState& state, Pixel pixel) {
-    for (const PixelValue& value : state.session.inspect(*state.snapshot, pixel)) {
-        if (value.buffer != "position" || value.values.size() < 3) continue;
-        const Vec3 point(value.values[0], value.values[1], value.values[2]);
-        if (point == Vec3(0) || !isFinite(point)) return;
-        Camera camera = state.document.camera();
-        const Vec3 forward = glm::normalize(camera.target - camera.eye);
-        camera.target = camera.eye + forward * std::max(glm::dot(point - camera.eye, forward), 1e-3f);
-        state.setCamera(camera);
-        state.session.endEdit();
-        return;
-    }
-}
-
 }  // namespace
 
 void handleViewportInput(AppState& state, const ImRect& pane) {
@@ -124,7 +109,7 @@ void handleViewportInput(AppState& state, const ImRect& pane) {
         state.pinned = same ? std::nullopt : state.hovered;
     }
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && state.hovered) {
-        pickTarget(state, *state.hovered);
+        state.orbitTarget = state.session.surfaceAt(*state.hovered);  // the surface under the pointer
     }
 }
 

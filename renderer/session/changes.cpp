@@ -69,7 +69,8 @@ Changes differences(const FrameState& before, const FrameState& now, const Posed
     changes.lights = lightsMove(posed);
     addEdits(a, b, changes);
     changes.sampling = a.path() != b.path() || a.render().samplesPerPixel != b.render().samplesPerPixel ||
-                       a.render().seed != b.render().seed || before.jitter != now.jitter;
+                       a.render().seed != b.render().seed || before.jitter != now.jitter ||
+                       (now.camera.shutter > 0 && a.render().fps != b.render().fps);  // it is open for another time
     return changes;
 }
 

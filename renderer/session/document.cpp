@@ -66,6 +66,13 @@ bool sameValues(const std::vector<ParameterInfo>& a, const std::vector<Parameter
                 near.empty() ? "an id from `lumiscope list parameters`" : '"' + near + '"', ""});
 }
 
+/// Throws Error(Usage) naming the nearest id if there is none of this name.
+ParameterInfo declaration(const Document& document, const std::string& id) {
+    for (ParameterInfo& info : document.list(id))
+        if (info.id == id) return std::move(info);
+    throwUnknownId(document, id, "");
+}
+
 /// Which of two ids is set first so that none undoes another: what is loaded or selected goes before its edits.
 int setOrder(const std::string& id) {
     if (id.compare(0, 6, "scene.") == 0) return 0;
@@ -107,8 +114,9 @@ void RenderSettings::describe(ParameterVisitor& v) {
     v.integer("seed", seed, {.label = "Seed", .min = 0, .max = 1e9, .help = "Selects another set of random numbers",
                              .redo = Redo::Samples});
     v.number("fps", fps, {.label = "Frames a second", .min = 0.1, .max = 1000, .scale = Scale::Log, .unit = "Hz",
-                          .help = "Time goes on by the inverse of this with each frame while it plays",
-                          .redo = Redo::Display});
+                          .help = "Time goes on by the inverse of this with each frame while it plays; so the shutter's time "
+                                  "depends on it",
+                          .redo = Redo::Samples});
 }
 
 Document::Document(std::shared_ptr<const Scene> scene) : loaded_(scene), edited_(std::move(scene)) {
@@ -203,11 +211,7 @@ Redo Document::setText(const std::string& id, const std::string& text, const std
     throwUnknownId(*this, id, where);
 }
 
-ParameterValue Document::get(const std::string& id) const {
-    for (ParameterInfo& info : list(id))
-        if (info.id == id) return std::move(info.value);
-    throwUnknownId(*this, id, "");
-}
+ParameterValue Document::get(const std::string& id) const { return declaration(*this, id).value; }
 
 ParameterValue Document::initial(const std::string& id) const {
     if (!initial_) return get(id);
@@ -215,6 +219,24 @@ ParameterValue Document::initial(const std::string& id) const {
     before.time_ = time_;
     if (id != "camera.select") before.camera_ = camera_;
     return before.get(id);
+}
+
+Redo Document::resetOne(const std::string& id) {
+    const ParameterInfo declared = declaration(*this, id);
+    if (!initial_) return Redo::Display;
+    if (id == "time") return set(id, initial_->time_);
+    if (id == "environment.file") return environmentDigest_.empty() ? Redo::Display : set(id, std::string());
+    const bool ofPose = id.starts_with("camera.") && id != "camera.select" && id != "camera.jitter";
+    if (!ofPose) return set(id, initial(id));
+    return cameraEdits_.erase(id.substr(std::string_view("camera.").size())) > 0 ? declared.redo : Redo::Display;
+}
+
+Redo Document::reset(std::vector<std::string> ids) {
+    std::stable_sort(ids.begin(), ids.end(),
+                     [](const std::string& a, const std::string& b) { return setOrder(a) < setOrder(b); });
+    Redo worst = Redo::Display;
+    for (const std::string& id : ids) worst = std::max(worst, resetOne(id));
+    return worst;
 }
 
 std::vector<ParameterInfo> Document::list(const std::string& filter) const {

@@ -74,8 +74,11 @@ public:
     /// `scene.index` and `scene.variant` only take effect by loading again.
     Redo set(const std::string& id, const ParameterValue& value, const std::string& where = "");
     Redo setText(const std::string& id, const std::string& text, const std::string& where = "");
-    /// Takes the sky of another document of the same scene.
-    void adoptEnvironment(const Document& other);
+    /// Takes values back to what they were before any change, and returns what that invalidates: a camera's follow its
+    /// animation again, `environment.file` brings the scene's own sky. Throws Error(Usage) for an unknown id.
+    Redo reset(std::vector<std::string> ids);
+    /// Takes the sky image of another document of the same scene, and leaves its scale and rotation.
+    void adoptSkyImage(const Document& other);
     /// Content digest of the image that `environment.file` read; empty while the sky is the scene's own.
     const std::string& environmentDigest() const { return environmentDigest_; }
     void setTime(float seconds) { time_ = seconds; }
@@ -98,6 +101,7 @@ public:
 
 private:
     friend class DocumentFields;
+    Redo resetOne(const std::string& id);
     /// Does the camera move by itself, so that an edit to its present value fixes it?
     bool cameraMoves() const;
     static void addInstancesOf(const Document& from, const Document& to, nlohmann::json& changes);

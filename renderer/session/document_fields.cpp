@@ -132,8 +132,10 @@ Scene& DocumentFields::edit(Document& document) {
     return *scene;
 }
 
-void Document::adoptEnvironment(const Document& other) {
-    DocumentFields::edit(*this).environment = other.edited_->environment;
+void Document::adoptSkyImage(const Document& other) {
+    Environment& sky = DocumentFields::edit(*this).environment;
+    sky.file = other.edited_->environment.file;
+    sky.image = other.edited_->environment.image;
     environmentDigest_ = other.environmentDigest_;
 }
 

@@ -102,23 +102,32 @@ ExrLayers exportLayers(const FrameOutput& frame, const std::string& instance, co
     return layers;
 }
 
+std::vector<uint8_t> encodeView(const std::filesystem::path& name, const FrameOutput& frame, const ViewSettings& view,
+                                const BufferSelection& buffers, bool half, const std::string& state) {
+    const std::string extension = lowerExtension(name);
+    if (extension == ".exr") return encodeExr(exportLayers(frame, view.module, buffers, state), half);
+    if (extension != ".png")
+        throwUsage({"cannot write this kind of file", name.string(), ".exr or .png", '"' + extension + '"'});
+    DisplayInfo info;
+    return encodePng(*drawView(frame, view, info), {{kStateKey, state}});
+}
+
 void writeView(const std::filesystem::path& path, const FrameOutput& frame, const ViewSettings& view,
                const BufferSelection& buffers, bool half, const std::string& state) {
-    const std::string extension = lowerExtension(path);
-    if (extension == ".exr") {
-        writeExr(path, exportLayers(frame, view.module, buffers, state), half);
-    } else if (extension == ".png") {
-        DisplayInfo info;
-        writePng(path, *drawView(frame, view, info), {{kStateKey, state}});
-    } else {
-        throwUsage({"cannot write this kind of file", path.string(), ".exr or .png", '"' + extension + '"'});
-    }
+    writeFileAtomically(path, encodeView(path, frame, view, buffers, half, state));
 }
 
 void exportView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
                 const OutputChoice& choice, const std::string& state) {
     const ViewSettings& view = document.view(choice.view);
     writeView(path, frame, view, BufferSelection::parse(choice.buffers, view.module, "--buffers"), choice.half, state);
+}
+
+std::filesystem::path exportNewView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
+                                    const OutputChoice& choice, const std::string& state) {
+    const ViewSettings& view = document.view(choice.view);
+    const BufferSelection buffers = BufferSelection::parse(choice.buffers, view.module, "--buffers");
+    return writeNewFile(path, encodeView(path, frame, view, buffers, choice.half, state));
 }
 
 }  // namespace lumi

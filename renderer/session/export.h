@@ -38,9 +38,16 @@ ExrLayers exportLayers(const FrameOutput& frame, const std::string& instance, co
 void writeView(const std::filesystem::path& path, const FrameOutput& frame, const ViewSettings& view,
                const BufferSelection& buffers, bool half, const std::string& state);
 
+/// The bytes of such a file; `name` says which kind.
+std::vector<uint8_t> encodeView(const std::filesystem::path& name, const FrameOutput& frame, const ViewSettings& view,
+                                const BufferSelection& buffers, bool half, const std::string& state);
+
 /// The same of one of a document's views. `document` is the one that the frame was drawn from.
 void exportView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
                 const OutputChoice& choice, const std::string& state);
+/// The same over no other file: see writeNewFile(). Returns the name.
+std::filesystem::path exportNewView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
+                                    const OutputChoice& choice, const std::string& state);
 
 /// Camera space to normalised device coordinates: x right, y up, both in [-1, 1] over the image.
 Mat4 ndcFromCamera(const CameraPose& camera);

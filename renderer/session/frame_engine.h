@@ -78,6 +78,10 @@ public:
     /// it was stopped.
     std::optional<FrameOutput> preview(const Document& document, Extent2 extent, std::stop_token stop = {},
                                        std::stop_token sceneStop = {});
+    /// Signals of the scene that was traced last, sampled otherwise; nothing if it was stopped. It counts to no frame.
+    std::shared_ptr<const Signals> sampleAgain(const FrameSampling& sampling, std::stop_token stop = {});
+    /// World position of what `camera` sees through the middle of a pixel, in the scene that was traced last; nothing on the sky.
+    std::optional<Vec3> surfaceAt(const CameraPose& camera, Pixel pixel);
     /// checkFrames() with this engine's tracer. Throws Error(Interrupted) when stopped.
     std::vector<FrameCheck> checkSignals(const Document& document, std::stop_token stop, std::stop_token sceneStop = {});
 

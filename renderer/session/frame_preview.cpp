@@ -44,4 +44,20 @@ std::vector<FrameCheck> FrameEngine::checkSignals(const Document& document, std:
     return checkFrames(document, tracer_, stop, sceneStop);
 }
 
+std::shared_ptr<const Signals> FrameEngine::sampleAgain(const FrameSampling& sampling, std::stop_token stop) {
+    auto signals = std::make_shared<Signals>();
+    if (!tracer_.sample(sampling, *signals, stop)) return nullptr;
+    return signals;
+}
+
+std::optional<Vec3> FrameEngine::surfaceAt(const CameraPose& camera, Pixel pixel) {
+    if (!bound_) return std::nullopt;
+    const Vec2 middle(static_cast<float>(pixel.x) + 0.5f, static_cast<float>(pixel.y) + 0.5f);
+    const Ray ray = cameraStart(camera, middle, Vec2(0.5f), 0).ray;
+    Hit hit;
+    tracer_.closestHits({&ray, 1}, {&hit, 1});
+    if (!hit.valid()) return std::nullopt;
+    return ray.origin + ray.direction * hit.distance;
+}
+
 }  // namespace lumi

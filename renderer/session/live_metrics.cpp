@@ -32,6 +32,14 @@ std::shared_ptr<const Image8> shown(const Image& image, float exposureEv, ToneCu
     return pixels;
 }
 
+/// Values on which depends to what, and how, an image of the module converges.
+std::string settingsOf(const Document& document, const std::string& module) {
+    std::string text;
+    for (const std::string& group : {module + ".", std::string("path."), std::string("sampler."), std::string("render.spp")})
+        for (const ParameterInfo& info : document.list(group)) text += info.id + '=' + formatParameter(info.value) + '\n';
+    return text;
+}
+
 }  // namespace
 
 /// A reference, and what it is one of; without a scene it came from a file.
@@ -51,13 +59,19 @@ LiveMetrics::LiveMetrics(MessageLog& log) : log_(log) {
 }
 
 LiveMetrics::~LiveMetrics() {
-    maker_.request_stop();  // and those before it have been asked to
+    stopMaking();
     thread_.request_stop();
     wake_.notify_all();
 }
 
+/// Asks what makes a reference to stop, and lets go of what has.
+void LiveMetrics::stopMaking() {
+    std::erase_if(makers_, [](const Maker& maker) { return maker.done.load(); });
+    for (Maker& maker : makers_) maker.thread.request_stop();
+}
+
 /// Runs `make` aside; what it gives becomes the reference unless something else was asked for since. Never waits: a
-/// thread that is to stop is joined at the end.
+/// thread that is to stop is joined when it has, or at the end.
 void LiveMetrics::inBackground(std::function<Made(std::stop_token)> make) {
     uint64_t generation = 0;
     {
@@ -66,9 +80,9 @@ void LiveMetrics::inBackground(std::function<Made(std::stop_token)> make) {
         status_.working = true;
         status_.progress = {};
     }
-    maker_.request_stop();
-    if (maker_.joinable()) retired_.push_back(std::move(maker_));
-    maker_ = std::jthread([this, generation, make = std::move(make)](std::stop_token stop) {
+    stopMaking();
+    Maker& maker = makers_.emplace_back();
+    maker.thread = std::jthread([this, &maker, generation, make = std::move(make)](std::stop_token stop) {
         lowerPriority();
         std::optional<Made> made;
         try {
@@ -78,10 +92,14 @@ void LiveMetrics::inBackground(std::function<Made(std::stop_token)> make) {
         } catch (const std::exception& error) {
             log_.error(std::string("the reference could not be made: ") + error.what());
         }
-        std::lock_guard lock(mutex_);
-        if (generation != generation_) return;
-        if (made) adopt(std::move(*made));
-        status_.working = false;
+        {
+            std::lock_guard lock(mutex_);
+            if (generation == generation_) {
+                if (made) adopt(std::move(*made));
+                status_.working = false;
+            }
+        }
+        maker.done = true;
     });
 }
 
@@ -127,12 +145,13 @@ void LiveMetrics::adopt(Made made) {
     reference_ = std::move(made.held);
     latest_ = nullptr;
     curves_ = nullptr;
+    curvesOf_.clear();
     chosenAnew_ = true;
     wake_.notify_all();
 }
 
 void LiveMetrics::cancelReference() {
-    maker_.request_stop();
+    stopMaking();
     std::lock_guard lock(mutex_);
     ++generation_;
     status_.working = false;
@@ -144,6 +163,7 @@ void LiveMetrics::clearReference() {
     reference_ = nullptr;
     latest_ = nullptr;
     curves_ = nullptr;
+    curvesOf_.clear();
     status_ = {};
 }
 
@@ -156,8 +176,7 @@ bool LiveMetrics::fits(const Snapshot& snapshot) const {
     std::lock_guard lock(mutex_);
     if (!reference_ || reference_->image.extent() != snapshot.extent) return false;
     const ReferenceSpec& spec = reference_->spec;
-    return !spec.scene || (snapshot.scene && snapshot.scene->scene == spec.scene && snapshot.time == spec.time &&
-                           snapshot.camera == spec.camera);
+    return !spec.scene || (snapshot.document && isReferenceOf(spec, *snapshot.document));
 }
 
 void LiveMetrics::choose(std::vector<std::string> metrics, const std::string& map) {
@@ -203,12 +222,16 @@ void LiveMetrics::run(std::stop_token quit) {
         chosenAnew_ = false;
         lock.unlock();
         auto measured = std::make_shared<LiveMeasurement>();
-        if (fits(*snapshot)) *measured = measure(*snapshot, *reference, metrics, map);
-        else measured->problem = reference->image.extent() == snapshot->extent
-                                     ? "The reference is of another camera, time or scene."
-                                     : fmt::format("The reference has {} x {} pixels, the picture {} x {}.",
-                                                   reference->image.width(), reference->image.height(),
-                                                   snapshot->extent.width, snapshot->extent.height);
+        try {
+            if (fits(*snapshot)) *measured = measure(*snapshot, *reference, metrics, map);
+            else measured->problem = reference->image.extent() == snapshot->extent
+                                         ? "The reference is of another camera, time, scene or light transport."
+                                         : fmt::format("The reference has {} x {} pixels, the picture {} x {}.",
+                                                       reference->image.width(), reference->image.height(),
+                                                       snapshot->extent.width, snapshot->extent.height);
+        } catch (const std::exception& error) {  // an image or a map for which there is no memory
+            measured->problem = std::string("Nothing could be measured: ") + error.what();
+        }
         measured->serial = snapshot->serial;
         measured->samples = snapshot->accumulatedSamples;
         lock.lock();
@@ -226,6 +249,7 @@ LiveMeasurement LiveMetrics::measure(const Snapshot& snapshot, const Held& refer
     for (const PaneSnapshot& shownPane : snapshot.panes) {
         PaneMeasurement& pane = result.panes.emplace_back();
         pane.module = shownPane.module;
+        pane.settings = settingsOf(*snapshot.document, shownPane.module);
         const auto image = snapshot.results.find(shownPane.module);
         if (image == snapshot.results.end() || image->second->extent() != reference.image.extent()) continue;
         ImagePair pair;
@@ -247,14 +271,18 @@ LiveMeasurement LiveMetrics::measure(const Snapshot& snapshot, const Held& refer
     return result;
 }
 
-/// Adds a point to each pane's curve; the caller holds the lock. Where samples go back, a curve begins again.
+/// Adds a point to each pane's curve; the caller holds the lock. Where samples go back, or something else converges, a curve
+/// begins again.
 void LiveMetrics::note(const LiveMeasurement& measurement) {
     if (!measurement.problem.empty()) return;
     auto curves = curves_ ? std::make_shared<ConvergenceCurves>(*curves_) : std::make_shared<ConvergenceCurves>();
     curves->resize(measurement.panes.size());
+    curvesOf_.resize(measurement.panes.size());
     for (size_t i = 0; i < measurement.panes.size(); ++i) {
         std::vector<ConvergencePoint>& curve = (*curves)[i];
-        if (!curve.empty() && curve.back().samples > measurement.samples) curve.clear();
+        const std::string now = measurement.panes[i].module + '\n' + measurement.panes[i].settings;
+        if (curvesOf_[i] != now || (!curve.empty() && curve.back().samples > measurement.samples)) curve.clear();
+        curvesOf_[i] = now;
         if (!curve.empty() && curve.back().samples == measurement.samples) curve.pop_back();
         curve.push_back({measurement.samples, measurement.panes[i].values});
         if (curve.size() <= kMostPoints) continue;

@@ -1,7 +1,9 @@
 #pragma once
+#include <atomic>
 #include <condition_variable>
 #include <filesystem>
 #include <functional>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -18,6 +20,7 @@ namespace lumi {
 /// How far one pane's result is from the reference.
 struct PaneMeasurement {
     std::string module;
+    std::string settings;  ///< values of the module's and the light paths' parameters, as text
     std::map<std::string, double> values;  ///< by metric id; NaN where there is no value
     std::map<std::string, std::string> reasons;  ///< by metric id: why a value is NaN or infinite
     int64_t nonFinitePixels = 0;
@@ -76,8 +79,8 @@ public:
     /// The latest picture; previews and pictures that were seen are left out.
     void offer(std::shared_ptr<const Snapshot> snapshot);
     std::shared_ptr<const LiveMeasurement> latest() const;
-    /// How each pane's module came nearer to this reference since it was set, at most a few hundred points; null before
-    /// the first.
+    /// How each pane's module came nearer to this reference since it was set, or since the pane has this module with these
+    /// parameters; at most a few hundred points; null before the first.
     std::shared_ptr<const ConvergenceCurves> curves() const;
 
 private:
@@ -89,6 +92,7 @@ private:
                             const std::string& map) const;
     void adopt(Made made);
     void note(const LiveMeasurement& measurement);
+    void stopMaking();
     void inBackground(std::function<Made(std::stop_token)> make);
 
     MessageLog& log_;
@@ -102,9 +106,15 @@ private:
     std::shared_ptr<const Snapshot> offered_;
     std::shared_ptr<const LiveMeasurement> latest_;
     std::shared_ptr<const ConvergenceCurves> curves_;
+    std::vector<std::string> curvesOf_;  ///< module and settings of each
     uint64_t generation_ = 0;  ///< of what was asked for last
-    std::vector<std::jthread> retired_;
-    std::jthread maker_, thread_;
+    /// What makes or reads a reference; it says when it is done. The last is the one that was asked for last.
+    struct Maker {
+        std::atomic<bool> done{false};
+        std::jthread thread;
+    };
+    std::list<Maker> makers_;  ///< of the thread that calls
+    std::jthread thread_;
 };
 
 /// Puts the error maps of several panes into them as pictures over one common range: see MapRange.

@@ -12,11 +12,24 @@ bool editsScene(const std::string& id) {
     return false;
 }
 
+/// All but the scene's key.
+ReferenceSpec specWithoutKey(const Document& document) {
+    ReferenceSpec spec;
+    spec.scene = document.scene();
+    spec.time = document.time();
+    spec.openSeconds = document.camera().shutter / document.render().fps;
+    spec.cameraTrack = document.cameraTrack();
+    spec.camera = poseCamera(document.camera(), {document.render().width, document.render().height});
+    spec.path = document.path();
+    spec.seed = static_cast<uint32_t>(document.render().seed);
+    spec.jitter = document.jitter() == Jitter::Auto ? Jitter::PerPixel : document.jitter();
+    return spec;
+}
+
 }  // namespace
 
 ReferenceSpec referenceSpec(const Document& document) {
-    ReferenceSpec spec;
-    spec.scene = document.scene();
+    ReferenceSpec spec = specWithoutKey(document);
     nlohmann::json edits = nlohmann::json::object();
     const nlohmann::json changed = document.changedValues();
     for (const auto& [id, value] : changed.items())
@@ -27,14 +40,14 @@ ReferenceSpec referenceSpec(const Document& document) {
                                    {"variant", document.sceneVariant()},
                                    {"edits", edits}}
                         .dump();
-    spec.time = document.time();
-    spec.openSeconds = document.camera().shutter / document.render().fps;
-    spec.cameraTrack = document.cameraTrack();
-    spec.camera = poseCamera(document.camera(), {document.render().width, document.render().height});
-    spec.path = document.path();
-    spec.seed = static_cast<uint32_t>(document.render().seed);
-    spec.jitter = document.jitter() == Jitter::Auto ? Jitter::PerPixel : document.jitter();
     return spec;
+}
+
+bool isReferenceOf(const ReferenceSpec& spec, const Document& document) {
+    const ReferenceSpec present = specWithoutKey(document);
+    return spec.scene == present.scene && spec.time == present.time && spec.openSeconds == present.openSeconds &&
+           spec.camera == present.camera && spec.cameraTrack == present.cameraTrack && spec.path == present.path &&
+           spec.jitter == present.jitter;
 }
 
 }  // namespace lumi

@@ -69,6 +69,16 @@ void Session::Impl::watch(std::stop_token quit) {
     }
 }
 
+/// More of the shown frame is asked for than it has. If no frame follows that has it, it is drawn again; nothing that is
+/// being drawn is given up for that.
+void Session::Impl::lookCloser() {
+    if (!document || (rendering && !resting)) return;
+    ++revision;  // what is shown is not all that is asked for
+    pending = std::max(pending.value_or(Redo::Filter), Redo::Filter);
+    frameFailed = false;
+    wake.notify_all();
+}
+
 /// Puts a whole document in the present one's place; what that invalidates follows from what differs.
 void Session::Impl::replaceDocument(const Document& next) {
     const Redo worst = worstDifference(*document, next);
@@ -85,14 +95,14 @@ void Session::setInspecting(bool on) {
     std::lock_guard lock(impl_->mutex);
     if (impl_->inspecting == on) return;
     impl_->inspecting = on;
-    if (on && impl_->document && impl_->resting) impl_->noteChange(Redo::Filter);
+    if (on) impl_->lookCloser();
 }
 
 void Session::setInspectedPixel(std::optional<Pixel> pixel) {
     std::lock_guard lock(impl_->mutex);
     if (impl_->inspectedPixel == pixel) return;
     impl_->inspectedPixel = pixel;
-    if (pixel && impl_->document && (impl_->resting || !impl_->rendering)) impl_->noteChange(Redo::Filter);
+    if (pixel) impl_->lookCloser();
 }
 
 void Session::open(const std::filesystem::path& scene, int sceneIndex, const std::string& variant,
@@ -173,6 +183,29 @@ void Session::setAll(const std::vector<std::pair<std::string, ParameterValue>>& 
     lock.unlock();
     if (reload) impl_->startLoading(origin);
     if (environmentFile) impl_->loadEnvironment(*environmentFile, environment);
+}
+
+void Session::reset(const std::vector<std::string>& ids) {
+    std::unique_lock lock(impl_->mutex);
+    const Document& present = impl_->requireDocument();
+    Document next = present;
+    const Redo worst = next.reset(ids);
+    std::string all;
+    for (const std::string& id : ids) {
+        all += id + ' ';
+        if (id == "environment.file") ++impl_->environmentGeneration;  // a sky on its way would undo this
+    }
+    if (next.sceneIndex() != present.sceneIndex() || next.sceneVariant() != present.sceneVariant()) {
+        Impl::Origin origin = impl_->origin;
+        origin.index = next.sceneIndex();
+        origin.variant = next.sceneVariant();
+        lock.unlock();
+        return impl_->startLoading(origin, ids);
+    }
+    impl_->timeEdited = impl_->timeEdited || next.time() != present.time();
+    impl_->history.begin(present, all);
+    impl_->document = std::move(next);
+    impl_->noteChange(worst);
 }
 
 void Session::endEdit() {

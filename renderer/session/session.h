@@ -38,6 +38,7 @@ struct Snapshot {
     Extent2 extent;
     CameraPose camera;
     std::shared_ptr<const PosedScene> scene;
+    std::shared_ptr<const Document> document;  ///< that it was drawn from
     std::shared_ptr<const Signals> signals;
     std::map<std::string, std::shared_ptr<const Image>> results;  ///< by instance name
     std::map<std::string, std::shared_ptr<const Image>> taps;     ///< "<instance>-<tap>"
@@ -102,6 +103,8 @@ public:
     void setText(const std::string& id, const std::string& text);
     /// Several values that belong together (eye and look-at): no frame sees a part of them. One step of undo.
     void setAll(const std::vector<std::pair<std::string, ParameterValue>>& values);
+    /// Back to what the scene has, one step of undo: see Document::reset().
+    void reset(const std::vector<std::string>& ids);
     /// Changes of the same ids in a row (a slider dragged, a camera flown) are one step of undo until this is called.
     void endEdit();
     /// The document as last set (not as last drawn).
@@ -139,10 +142,17 @@ public:
     void setInspectedPixel(std::optional<Pixel> pixel);
     /// All buffers present in the snapshot at a pixel.
     std::vector<PixelValue> inspect(const Snapshot& snapshot, Pixel pixel) const;
+    /// World position of what is seen through the middle of a pixel of the last frame; nothing where that is the sky, or
+    /// before there is a frame. The answer comes between frames; abandoned (std::future_error) when the session ends.
+    std::future<std::optional<Vec3>> surfaceAt(Pixel pixel);
 
     /// Writes the view's picture (.png: as shown; .exr: linear with the buffers as layers, colours as half if asked for),
-    /// state embedded. Runs in the background; success and failure arrive in the log.
+    /// state embedded. It is what is seen now; changes that come later wait for it. Runs in the background; success and
+    /// failure arrive in the log.
     void saveView(int view, const std::filesystem::path& path, const std::string& buffers = "all", bool half = false);
+    /// The same with all buffers as `<stem>.<instance>.<buffer>.<frame:04>.<extension>`, a name that is not taken; instance,
+    /// buffer and frame are those of the picture that is written.
+    void captureView(int view, const std::filesystem::path& stem, const std::string& extension);
     /// Checks the signals of each scene after its first frames.
     void setCheckingScenes(bool on);
     /// Checks the signals of the document as it is, when nothing else is to be done.

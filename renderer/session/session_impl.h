@@ -24,12 +24,18 @@ struct Session::Impl {
     ~Impl();
 
     struct Save {
-        std::filesystem::path path;
+        std::filesystem::path path;  ///< of a capture: what its name begins with
         OutputChoice choice;
+        std::string capture{};       ///< extension of a capture; empty: it is none
+    };
+    /// What surface is seen in a pixel.
+    struct Question {
+        Pixel pixel;
+        std::promise<std::optional<Vec3>> answer;
     };
     /// What the render thread does next.
     struct Work {
-        enum Kind { Frame, Redraw, Display, Preview, StepBack, SaveView, Check } kind = Frame;
+        enum Kind { Frame, Redraw, Display, Preview, StepBack, SaveView, Pick, Check } kind = Frame;
         std::shared_ptr<const Document> document;
         bool cut = false;
         FrameNumber firstFrame = 0;  ///< after a cut
@@ -42,6 +48,7 @@ struct Session::Impl {
         uint64_t sceneNumber = 0; ///< of the scene that this work is about
         StateLog states;          ///< as it was then, for StepBack and SaveView
         Save save;
+        std::shared_ptr<Question> question;
         std::stop_token stop, sceneStop;
     };
     /// Where the present scene came from, to load it again.
@@ -55,6 +62,7 @@ struct Session::Impl {
     // session.cpp: callers hold the lock.
     Document& requireDocument();
     void noteChange(Redo redo);
+    void lookCloser();
     void replaceDocument(const Document& next);
     void abandonFrame();
     void watch(std::stop_token quit);
@@ -63,8 +71,8 @@ struct Session::Impl {
     bool waitsForStream() const;
 
     // session_load.cpp
-    void startLoading(const Origin& origin);
-    void load(const Origin& origin, uint64_t generation, std::stop_token stop);
+    void startLoading(const Origin& origin, const std::vector<std::string>& reset = {});
+    void load(const Origin& origin, const std::vector<std::string>& reset, uint64_t generation, std::stop_token stop);
     void loadEnvironment(const std::string& file, uint64_t generation);
     void reapThreads(bool all);
     void runAside(std::function<void(std::stop_token)> body);
@@ -74,6 +82,8 @@ struct Session::Impl {
     bool hasWork() const;
     Work takeWork();
     bool takeAside(Work& work);
+    bool takeSave(Work& work);
+    bool mayBeSaved(const Save& save) const;
     void advanceTime(const Work& work);
     void perform(const Work& work);
     void drawFrame(const Work& work);
@@ -83,6 +93,8 @@ struct Session::Impl {
     void stepBack(const Work& work);
     void giveUp(const Work& work);
     void saveView(const Work& work);
+    void answer(const Work& work);
+    FrameRequest requestOf(const Work& work, const Document& drawn, FrameNumber number, bool cut) const;
     void finishSaves();
     void complete(FrameOutput frame, const Work& work);
     void adoptSteppedBack(const Work& work);
@@ -111,6 +123,7 @@ struct Session::Impl {
     bool checkingScenes = false, checkWanted = false, checking = false;
     std::shared_ptr<const SignalCheck> signalCheck;
     std::deque<Save> saves;
+    std::deque<std::shared_ptr<Question>> questions;
     bool resting = false;    ///< the shown frame has converged
     bool frameFailed = false;  ///< drawing failed: wait for a change
     std::stop_source frameStop;

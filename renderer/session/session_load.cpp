@@ -34,9 +34,10 @@ void takeInteractiveSize(Document& document) {
     document.set("render.height", std::max(height, 1));
 }
 
-/// The document of a new scene, with what outlives the one before and then what was asked for; refusals go to `log`.
-void prepare(Document& next, const std::optional<Document>& before,
-             const std::vector<std::pair<std::string, std::string>>& wanted, MessageLog& log) {
+/// The document of a new scene, with what outlives the one before, then what was asked for, and without what is to be as the
+/// scene has it; refusals go to `log`.
+void prepare(Document& next, const std::optional<Document>& before, const std::vector<std::pair<std::string, std::string>>& wanted,
+             const std::vector<std::string>& reset, MessageLog& log) {
     takeInteractiveSize(next);
     if (before) {
         const nlohmann::json kept = before->changedValues();
@@ -48,6 +49,13 @@ void prepare(Document& next, const std::optional<Document>& before,
             next.setText(id, text);
         } catch (const Error& error) {
             log.error(error.what());
+        }
+    }
+    for (const std::string& id : reset) {
+        if (id.compare(0, 6, "scene.") == 0) continue;
+        try {
+            next.reset({id});
+        } catch (const Error&) {  // it went with the scene before
         }
     }
 }
@@ -77,7 +85,7 @@ void Session::Impl::reapThreads(bool all) {
     // Their destructors join here, without the lock.
 }
 
-void Session::Impl::startLoading(const Origin& wanted) {
+void Session::Impl::startLoading(const Origin& wanted, const std::vector<std::string>& reset) {
     uint64_t generation = 0;
     std::stop_token stop;
     {
@@ -88,10 +96,10 @@ void Session::Impl::startLoading(const Origin& wanted) {
         generation = ++loadGeneration;
         loading = {true, 0, "opening", wanted.path.string()};
     }
-    runAside([this, wanted, generation, stop](std::stop_token) { load(wanted, generation, stop); });
+    runAside([this, wanted, reset, generation, stop](std::stop_token) { load(wanted, reset, generation, stop); });
 }
 
-void Session::Impl::load(const Origin& wanted, uint64_t generation, std::stop_token stop) {
+void Session::Impl::load(const Origin& wanted, const std::vector<std::string>& reset, uint64_t generation, std::stop_token stop) {
     LoadOptions options;
     options.sceneIndex = wanted.index;
     options.variant = wanted.variant;
@@ -110,7 +118,7 @@ void Session::Impl::load(const Origin& wanted, uint64_t generation, std::stop_to
         std::unique_lock lock(mutex);
         const std::optional<Document> before = document;
         lock.unlock();
-        prepare(*loaded, before, wanted.set, log);
+        prepare(*loaded, before, wanted.set, reset, log);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::Interrupted) failure = error.what();
     } catch (const std::exception& error) {
@@ -149,7 +157,7 @@ void Session::Impl::loadEnvironment(const std::string& file, uint64_t generation
             lock.lock();
             if (generation != environmentGeneration) return;  // another was asked for since
             history.begin(*document, "environment.file ");
-            document->adoptEnvironment(copy);
+            document->adoptSkyImage(copy);
             noteChange(Redo::Samples);
         } catch (const std::exception& error) {
             log.error(error.what());

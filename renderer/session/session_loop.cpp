@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "base/parallel.h"
 #include "session/session_impl.h"
 
@@ -46,6 +47,7 @@ void Session::Impl::loop(std::stop_token quit) {
 bool Session::Impl::hasWork() const {
     if (!document) return false;
     if (stepWanted || stepsBack > 0 || restartWanted) return true;
+    if (!questions.empty()) return true;
     if (pending) return !waitsForStream();
     if (!saves.empty()) return true;
     if (checkWanted && shownDocument && sinceChange.elapsedMs() >= kQuietMs) return true;
@@ -70,8 +72,37 @@ std::optional<Extent2> Session::Impl::previewExtent() const {
     return Extent2{side(render.width), side(render.height)};
 }
 
+/// Is the shown frame what was to be saved, and can it be? Behind a preview the frame that it stands for is yet to come, and a
+/// frame of which a part was drawn anew cannot be drawn again with its buffers.
+bool Session::Impl::mayBeSaved(const Save& save) const {
+    if (!shownDocument) return false;
+    const bool followed = pending || restartWanted || stepsBack > 0;
+    if (states.empty() || !followed) return true;
+    if (snapshot && snapshot->preview) return false;
+    const bool isPicture = (save.capture.empty() ? lowerExtension(save.path) : "." + save.capture) == ".png";
+    return isPicture || engine.canRepeat(shown.number);
+}
+
+/// What is to be saved comes before changes: it is what was seen.
+bool Session::Impl::takeSave(Work& work) {
+    if (saves.empty() || !mayBeSaved(saves.front())) return false;
+    work.kind = Work::SaveView;
+    work.save = saves.front();
+    work.states = states;
+    saves.pop_front();
+    return true;
+}
+
 /// Work that draws no new frame of the sequence: earlier ones again, a preview, a file, a check. False if there is none.
 bool Session::Impl::takeAside(Work& work) {
+    if (!questions.empty()) {
+        work.kind = Work::Pick;
+        work.question = questions.front();
+        work.states = states;
+        questions.pop_front();
+        return true;
+    }
+    if (takeSave(work)) return true;
     if (restartWanted) return false;
     if (stepsBack > 0) {
         work.kind = Work::StepBack;
@@ -93,13 +124,6 @@ bool Session::Impl::takeAside(Work& work) {
         return true;
     }
     if (pending || !shownDocument) return false;
-    if (!saves.empty()) {
-        work.kind = Work::SaveView;
-        work.save = saves.front();
-        work.states = states;
-        saves.pop_front();
-        return true;
-    }
     if (checkWanted && !stepWanted && sinceChange.elapsedMs() >= kQuietMs) {
         work.kind = Work::Check;
         work.document = std::make_shared<Document>(*document);
@@ -161,6 +185,7 @@ void Session::Impl::perform(const Work& work) {
         case Work::Redraw: drawFrame(work); break;
         case Work::StepBack: stepBack(work); break;
         case Work::SaveView: saveView(work); break;
+        case Work::Pick: answer(work); break;
         case Work::Preview: drawPreview(work); break;
         case Work::Check: checkSignals(work); break;
         case Work::Display:
@@ -176,21 +201,26 @@ void Session::Impl::perform(const Work& work) {
     }
 }
 
+/// A frame with all that is to be told of it.
+FrameRequest Session::Impl::requestOf(const Work& work, const Document& drawn, FrameNumber number, bool cut) const {
+    FrameRequest request{drawn, number, cut, {}, {}};
+    request.inspected = work.inspectedPixel;
+    if (!work.inspecting) return request;
+    for (const std::string& instance : drawn.activeInstances()) {
+        const BufferSelection all = BufferSelection::all(instance);
+        request.signals |= all.signals;
+        request.taps[instance] = all.taps;
+    }
+    return request;
+}
+
 void Session::Impl::drawFrame(const Work& work) {
     const bool first = work.cut || shown.number < 0;
     const FrameNumber number = first                          ? work.firstFrame
                                : work.kind == Work::Redraw ? shown.number
                                                            : shown.number + 1;
-    FrameRequest request{*work.document, number, first, {}, {}};
-    request.inspected = work.inspectedPixel;
-    if (work.inspecting)
-        for (const std::string& instance : work.document->activeInstances()) {
-            const BufferSelection all = BufferSelection::all(instance);
-            request.signals |= all.signals;
-            request.taps[instance] = all.taps;
-        }
     Timer timer;
-    std::optional<FrameOutput> frame = engine.advance(request, work.stop, work.sceneStop);
+    std::optional<FrameOutput> frame = engine.advance(requestOf(work, *work.document, number, first), work.stop, work.sceneStop);
     if (frame) {
         complete(std::move(*frame), work);
         // The scene before, its loaders' scratch and its frames are gone: their memory goes back to the system.

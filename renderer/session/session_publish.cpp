@@ -83,6 +83,7 @@ void Session::Impl::publish() {
     next->extent = next->traced = shown.camera.extent;
     next->camera = shown.camera;
     next->scene = shown.scene;
+    next->document = shownDocument;
     next->signals = shown.signals;
     next->results = shown.results;
     next->taps = shown.taps;
@@ -126,6 +127,7 @@ void Session::Impl::publishPreview(const FrameOutput& coarse, const Work& work) 
     next->traced = coarse.camera.extent;
     next->camera = poseCamera(moving.camera(), next->extent);
     next->scene = coarse.scene;
+    next->document = work.document;
     const int count = moving.layout() == Layout::Single ? 1 : kViewCount;
     for (int i = 0; i < count; ++i) {
         const ViewSettings& view = moving.view(i);

@@ -86,6 +86,24 @@ void Session::saveView(int view, const std::filesystem::path& path, const std::s
     impl_->wake.notify_all();
 }
 
+void Session::captureView(int view, const std::filesystem::path& stem, const std::string& extension) {
+    if (!snapshot()) return impl_->log.error(stem.string() + ": there is no picture yet");
+    std::lock_guard lock(impl_->mutex);
+    impl_->saves.push_back({stem, {view, "all", false}, extension});
+    impl_->wake.notify_all();
+}
+
+std::future<std::optional<Vec3>> Session::surfaceAt(Pixel pixel) {
+    const auto question = std::make_shared<Impl::Question>();
+    question->pixel = pixel;
+    std::future<std::optional<Vec3>> answer = question->answer.get_future();
+    std::lock_guard lock(impl_->mutex);
+    if (!impl_->snapshot) question->answer.set_value(std::nullopt);
+    else impl_->questions.push_back(question);
+    impl_->wake.notify_all();
+    return answer;
+}
+
 int SignalCheck::brokenRules() const {
     int broken = 0;
     for (const FrameCheck& frame : frames)

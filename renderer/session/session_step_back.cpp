@@ -21,7 +21,10 @@ void Session::Impl::stepBack(const Work& work) {
             replayed = static_cast<float>(i - start) / static_cast<float>(target - start + 1);
         }
         StateLog::Entry entry = before.entry(i);
-        std::optional<FrameOutput> next = engine.advance({*entry.document, entry.frame, i == start, {}, {}}, work.stop, work.sceneStop);
+        const bool cut = i == start;
+        std::optional<FrameOutput> next =
+            engine.advance(i == target ? requestOf(work, *entry.document, entry.frame, cut) : FrameRequest{*entry.document, entry.frame, cut, {}, {}},
+                           work.stop, work.sceneStop);
         if (!next) break;
         next->changes.cut = entry.cut;  // the log keeps what was, not that a replay begins with a cut
         next->historyDropped = entry.historyDropped;
@@ -59,6 +62,10 @@ void Session::Impl::adoptSteppedBack(const Work& work) {
             if (!edits.contains("time")) next.setTime(shownDocument->time());
         }
     }
+    nlohmann::json undone = Document::difference(*document, next);
+    undone.erase("time");
+    // What the frame stepped back to had not seen yet is a step of undo.
+    if (!undone.empty()) history.begin(*document, "step-back"), history.end();
     document = next;
     ++revision;
     pending = std::max(pending, std::optional(worstDifference(*shownDocument, *document)));

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "base/isa.h"
+#include "params/json_text.h"
 
 namespace lumi {
 using nlohmann::json;
@@ -171,7 +172,7 @@ std::string StateLog::json(const nlohmann::json& output) const {
                                   {"frame", entry(present).frame},
                                   {"exposure", entry(present).document->view(output.value("view", 0)).display.exposureEv},
                                   {"output", output}};
-    return state.dump();
+    return jsonText(state);
 }
 
 }  // namespace lumi

@@ -134,7 +134,7 @@ class Window:
         return new.pop()
 
     def capture_at_rest(self, wanted=None):
-        """A capture of frame `wanted`, or of the frame that stays; names are those of what is shown when the key is struck."""
+        """A capture of frame `wanted`, or of the frame that stays."""
         last = self.capture()
 
         def rests():
@@ -197,7 +197,6 @@ def walk_through_time(window):
     assert frame_of(window.capture()) > 0, "frames follow while it plays"
     window.key("ctrl+F12")
     exr = window.until("the EXR", lambda: list(window.captures.glob("*.exr")))[0]
-    window.until("all of it", lambda: b"objectId" in exr.read_bytes())
     data = exr.read_bytes()
     for layer in (b"albedo.R", b"normal.X", b"depth.Z", b"lumiscope"):
         assert layer in data, f"{exr.name} lacks {layer}"

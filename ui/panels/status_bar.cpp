@@ -116,12 +116,12 @@ void drawMessages(AppState& state, const ImRect& area) {
 
 void drawToast(AppState& state, const ImRect& area) {
     constexpr double kSeconds = 7;
-    static size_t seen = 0;  // of one window, like ImGui's own state
+    static uint64_t seen = 0;  // of one window, like ImGui's own state
     static double since = -100;
     const std::vector<Message> messages = state.log.messages();
-    if (messages.size() != seen) {
-        if (messages.size() > seen && messages.back().severity != Severity::Info) since = ImGui::GetTime();
-        seen = messages.size();
+    if (!messages.empty() && messages.back().serial > seen) {
+        if (messages.back().severity != Severity::Info) since = ImGui::GetTime();
+        seen = messages.back().serial;
     }
     const double age = ImGui::GetTime() - since;
     if (age > kSeconds || messages.empty() || state.messagesOpen) return;

@@ -67,7 +67,7 @@ void drawChannel(AppState& state) {
     const size_t present = std::min(static_cast<size_t>(chosen), info.options.size() - 1);
     info.value = info.options[present];
     const ParameterEdit edit = parameterRow(info, state.document.changed(id));
-    if (edit.reset) state.reset(id);
+    if (edit.reset) state.reset({id});
     if (!edit.value) return;
     const auto wanted = std::find(info.options.begin(), info.options.end(), std::get<std::string>(*edit.value));
     state.setOnce(id, all[static_cast<size_t>(wanted - info.options.begin())]);

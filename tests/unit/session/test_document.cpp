@@ -195,6 +195,42 @@ TEST(Document, AnEditToThePresentValueFixesACameraThatMoves) {
     EXPECT_EQ(again.camera().eye, eye);
 }
 
+TEST(Document, AResetCameraFollowsItsAnimationAgain) {
+    Document document(movingScene());
+    const Document fresh = document;
+    document.setText("camera.eye", "0,2,7");
+    document.setText("camera.fov-y-deg", "30");
+    document.setTime(1);
+    EXPECT_GE(document.reset({"camera.eye"}), Redo::Samples);
+    EXPECT_EQ(document.camera().eye, fresh.cameraAt(1).eye);
+    EXPECT_EQ(document.camera().fovYDeg, 30);
+    EXPECT_EQ(document.changedValues().count("camera.eye"), 0u) << document.changedValues().dump();
+    EXPECT_EQ(document.reset({"camera.eye"}), Redo::Display) << "nothing was left to take back";
+    expectError(ErrorKind::Usage, [&] { document.reset({"camera.eyes"}); }, {"camera.eye"});
+}
+
+TEST(Document, ResetsAllThatChanged) {
+    Scene scene = makeTinyScene();
+    scene.render.module = "svgf";
+    scene.render.set = {{"view.0.buffer", "historyLength"}};
+    Document document(std::make_shared<Scene>(scene));
+    for (const auto& [id, text] : std::vector<std::pair<const char*, const char*>>{
+             {"view.0.module", "none"}, {"camera.select", "side-view"}, {"camera.eye", "5,2,1"}, {"camera.jitter", "none"},
+             {"path.max-depth", "2"}, {"light.lamp.power", "3"}, {"svgf.color-alpha", "0.5"}, {"time", "2"}})
+        document.setText(id, text);
+    std::vector<std::string> ids;
+    const nlohmann::json changed = document.changedValues();
+    for (const auto& [id, value] : changed.items()) ids.push_back(id);
+    EXPECT_GE(document.reset(ids), Redo::Samples);
+    EXPECT_TRUE(document.changedValues().empty()) << document.changedValues().dump();
+    EXPECT_EQ(document.view(0).buffer, "historyLength") << "the method is there before its buffer";
+}
+
+TEST(Document, FramesASecondSetTheShutter) {
+    Document document(tinyScene());
+    EXPECT_GE(document.setText("render.fps", "30"), Redo::Samples);
+}
+
 TEST(Document, DifferencesTakeBackWhatOneInstanceHad) {
     Document before(tinyScene()), after = before;
     after.setText("accumulate@b.max-samples", "7");
@@ -225,6 +261,19 @@ TEST(Document, DifferencesTakeBackASkyWithItsSettings) {
     back.apply(Document::difference(before, after));
     EXPECT_EQ(back.scene()->environment.scale, 2);
     EXPECT_TRUE(Document::difference(back, after).empty()) << Document::difference(back, after).dump();
+}
+
+TEST(Document, AResetSkyIsTheScenesOwn) {
+    TemporaryFolder folder;
+    writeSky(folder / "sky.exr", 2);
+    Document document(tinyScene());
+    const auto before = document.scene();
+    EXPECT_EQ(document.reset({"environment.file"}), Redo::Display);
+    EXPECT_EQ(document.scene(), before) << "it was the scene's own";
+    document.setText("environment.file", (folder / "sky.exr").string());
+    document.setText("environment.scale", "3");
+    EXPECT_GE(document.reset({"environment.file"}), Redo::Samples);
+    EXPECT_TRUE(document.changedValues().empty()) << document.changedValues().dump();
 }
 
 TEST(Document, ASkyIsFoundBesideTheFileThatNamesIt) {

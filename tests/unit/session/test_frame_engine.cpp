@@ -70,6 +70,22 @@ TEST(FrameEngine, ChangesAreTold) {
     EXPECT_FALSE(changesAfter("accumulate.limit", "true").any());
 }
 
+TEST(FrameEngine, AnotherShutterIsAnotherMean) {
+    Engine e;
+    Document document(movingScene());
+    document.setText("camera.shutter", "0.9");
+    e.draw(document, 0);
+    EXPECT_EQ(e.draw(document, 1).convergence.at("accumulate").samples, 2u);
+    document.setText("render.fps", "4");
+    const FrameOutput after = e.draw(document, 2);
+    EXPECT_TRUE(after.changes.sampling);
+    EXPECT_EQ(after.convergence.at("accumulate").samples, 1u) << "the samples before saw the shutter open for another time";
+    document.setText("camera.shutter", "0");
+    e.draw(document, 3), e.draw(document, 4);
+    document.setText("render.fps", "60");
+    EXPECT_FALSE(e.draw(document, 5).changes.any()) << "a shutter that does not open";
+}
+
 TEST(FrameEngine, AFrameOfTheSameNumberReplacesTheLast) {
     Engine replaced, straight;
     Document document(tinyScene()), other = document;

@@ -97,6 +97,36 @@ TEST_F(LiveMetricsTest, AReferenceOfAnotherSizeMeasuresNothing) {
     EXPECT_EQ(metrics.reference().name, "small.exr") << "a failure leaves the one before";
 }
 
+TEST_F(LiveMetricsTest, ACurveIsOfOneMethodAlone) {
+    open();
+    waitFor("a sample", [&] { return session.snapshot()->accumulatedSamples >= 1; });
+    metrics.choose({"rmse"}, "");
+    metrics.loadReference(write("reference.exr", Image(session.snapshot()->extent, 3)), 0);
+    waitForReference();
+    measured();
+    const uint64_t first = metrics.latest()->samples;
+    session.setText("view.0.module", "accumulate@b");
+    waitFor("more samples than the other had", [&] {
+        const auto snapshot = session.snapshot();
+        return snapshot->panes[0].module == "accumulate@b" && snapshot->accumulatedSamples > first + 1;
+    });
+    pause();
+    measured();
+    ASSERT_EQ(metrics.curves()->at(0).size(), 1u);
+    EXPECT_GT(metrics.curves()->at(0)[0].samples, first + 1);
+}
+
+TEST_F(LiveMetricsTest, AFailureIsTold) {
+    open();
+    pause();
+    metrics.choose({"no-such-metric"}, "");
+    metrics.loadReference(write("reference.exr", Image(session.snapshot()->extent, 3)), 0);
+    waitForReference();
+    EXPECT_NE(measured()->problem.find("no-such-metric"), std::string::npos);
+    metrics.choose({"rmse"}, "");
+    waitFor("another measurement", [&] { return metrics.latest()->problem.empty(); });
+}
+
 TEST_F(LiveMetricsTest, WhatHasNoValueSaysWhy) {
     open();
     Image broken(session.snapshot()->extent, 3);
@@ -128,6 +158,14 @@ TEST_F(LiveMetricsTest, MakesWhatIsShownAndKnowsWhenItIsNot) {
     waitFor("the new view", [&] { return session.snapshot()->revision == session.revision(); });
     EXPECT_FALSE(metrics.fits(*session.snapshot()));
     EXPECT_NE(measured()->problem.find("camera"), std::string::npos);
+    session.undo();
+    session.setText("path.max-depth", "2");
+    waitFor("other light paths", [&] { return session.snapshot()->revision == session.revision(); });
+    EXPECT_FALSE(metrics.fits(*session.snapshot()));
+    session.undo();
+    session.setText("render.seed", "7");
+    waitFor("other samples", [&] { return session.snapshot()->revision == session.revision(); });
+    EXPECT_TRUE(metrics.fits(*session.snapshot())) << "of the same image";
     session.undo();
     metrics.makeReference(session.document(), 32);
     waitForReference();

@@ -292,6 +292,31 @@ TEST_F(SessionTest, SavedPicturesReplay) {
     }
 }
 
+TEST_F(SessionTest, TellsWhichSurfaceIsSeen) {
+    open({{"camera.jitter", "none"}, {"view.0.buffer", "position"}});
+    pause();
+    const Pixel pixel{7, 11};
+    std::future<std::optional<Vec3>> answer = session.surfaceAt(pixel);
+    ASSERT_EQ(answer.wait_for(std::chrono::minutes(4)), std::future_status::ready);
+    const std::optional<Vec3> point = answer.get();
+    ASSERT_TRUE(point.has_value());
+    const Image& position = (*session.snapshot()->signals)[Signal::Position];
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR((*point)[c], position.at(c, pixel.x, pixel.y), 1e-4f) << c;
+    EXPECT_FALSE(session.surfaceAt({-1, 0}).get().has_value());
+}
+
+TEST_F(SessionTest, AResetIsOneStepOfUndo) {
+    open();
+    session.setAll({{"path.max-depth", 2}, {"camera.fov-y-deg", 30.0f}});
+    session.endEdit();
+    session.reset({"path.max-depth", "camera.fov-y-deg"});
+    EXPECT_EQ(session.document().changedValues().count("camera.fov-y-deg"), 0u);
+    EXPECT_TRUE(session.undo());
+    EXPECT_EQ(session.document().path().maxDepth, 2);
+    EXPECT_EQ(session.document().camera().fovYDeg, 30);
+    expectError(ErrorKind::Usage, [&] { session.reset({"path.max-dept"}); }, {"path.max-depth"});
+}
+
 TEST_F(SessionTest, PlayingAdvancesTime) {
     open({{"render.fps", "50"}});
     session.setPlaying(true);
