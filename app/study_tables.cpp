@@ -156,14 +156,14 @@ void printTimes(const Study& study, const StudyOutcome& outcome) {
             for (const auto& [stage, ms] : time.stagesMs)
                 if (time.scene == scene) stages.insert(stage);
         TextTable table;
-        std::vector<std::string> head{study.scenes[scene].name + ", ms a frame", "spp", "frame", "trace"};
+        std::vector<std::string> head{study.scenes[scene].name + ", ms a frame", "spp", "frame", "build", "trace"};
         head.insert(head.end(), stages.begin(), stages.end());
         head.insert(head.end(), {"Mrays a frame", "ns a ray, whole frame"});
         if (!study.tracingStages.empty()) head.push_back("ns a ray, tracing alone");
         table.add(std::move(head));
         for (const StudyMeanTime& time : outcome.times.methods) {
             if (time.scene != scene) continue;
-            std::vector<std::string> row{"  " + outcome.plan.methods[time.method].name, std::to_string(time.spp), shown(time.frameMs), shown(time.traceMs)};
+            std::vector<std::string> row{"  " + outcome.plan.methods[time.method].name, std::to_string(time.spp), shown(time.frameMs), shown(time.buildMs), shown(time.traceMs)};
             for (const std::string& stage : stages) {
                 const auto found = time.stagesMs.find(stage);
                 row.push_back(found == time.stagesMs.end() ? "-" : shown(found->second));

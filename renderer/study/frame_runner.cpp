@@ -95,18 +95,24 @@ std::vector<RunningMethod> methodsOf(const JobContext& context, const StudyJob& 
 
 FrameRunner::FrameRunner(const JobContext& context, const StudyJob& job, std::vector<RunningMethod> methods)
     : context_(context), methods_(std::move(methods)), document_(jobDocument(context, job, methods_)),
-      problem_(problemDocument(context, job)), engine_(context.log), next_(context.study.frames.begin) {}
+      problem_(problemDocument(context, job)), earlier_(problem_), engine_(context.log), next_(context.study.frames.begin) {}
 
-void checkJobValues(const JobContext& context, const StudyJob& job) {
+std::string checkJobValues(const JobContext& context, const StudyJob& job) {
     std::vector<RunningMethod> methods;
     if (job.kind == StudyJob::Kind::Tune) methods.push_back({context.study.entries[job.entry].module + "@t0", {}});
     else methods = methodsOf(context, job);
     Document document = jobDocument(context, job, methods), problem = problemDocument(context, job);
-    if (const auto& step = context.study.frames.step) setAll(document, step->set), setAll(problem, step->set);
+    std::string images = document.environmentDigest() + ' ' + problem.environmentDigest();
+    if (const auto& step = context.study.frames.step) {
+        setAll(document, step->set), setAll(problem, step->set);
+        images += ' ' + document.environmentDigest() + ' ' + problem.environmentDigest();
+    }
+    return images;
 }
 
 FrameOutput FrameRunner::advance(const SignalSet& signals, const std::map<std::string, TapSet>& taps) {
     const int64_t number = next_++;
+    earlier_ = problem_;
     if (const auto& step = context_.study.frames.step; step && step->frame == number) {
         setAll(document_, step->set);
         setAll(problem_, step->set);
@@ -114,11 +120,20 @@ FrameOutput FrameRunner::advance(const SignalSet& signals, const std::map<std::s
     const float time = timeOf(context_.study, document_, number);
     document_.setTime(time);
     problem_.setTime(time);
+    if (number == context_.study.frames.begin) earlier_ = problem_;  // nothing was before
     FrameRequest request{document_, number, number == context_.study.frames.begin, signals, taps};
     for (const RunningMethod& method : methods_) request.instances.push_back(method.instance);
     std::optional<FrameOutput> frame = engine_.advance(request, context_.stop, context_.stop);
     if (!frame) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
     return std::move(*frame);
+}
+
+std::shared_ptr<const Signals> FrameRunner::geometry() {
+    const auto signals = context_.references.geometry(problem_, earlier_, [&](const FrameSampling& sampling) {
+        return engine_.sampleAgain(sampling, context_.stop);
+    });
+    if (!signals) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
+    return signals;
 }
 
 std::shared_ptr<const StudyReferenceFrame> FrameRunner::reference(const StudyReferences::Report& report, int spp) {

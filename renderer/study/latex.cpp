@@ -173,15 +173,15 @@ Rows timeRows(const Study& study, const StudyPlan& plan, const StudyTimes& times
     for (const StudyMeanTime& time : times.methods)
         for (const auto& [stage, ms] : time.stagesMs)
             if (time.scene == scene) stages.insert(stage);
-    Rows rows{"times-" + sceneFile(study, scene), "Times, " + study.scenes[scene].name, "", "lrrr", "Method & spp & ms / frame & trace", {}};
+    Rows rows{"times-" + sceneFile(study, scene), "Times, " + study.scenes[scene].name, "", "lrrrr", "Method & spp & ms / frame & build & trace", {}};
     for (const std::string& stage : stages) rows.columns += "r", rows.head += " & " + escapedLatex(stage);
     const bool tracing = !study.tracingStages.empty();
     rows.columns += tracing ? "rrr" : "rr", rows.head += " & Mrays / frame & ns / ray, whole frame";
     if (tracing) rows.head += " & ns / ray, tracing alone";
-    rows.caption = fmt::format("{}: medians of a frame's phases on {}, in milliseconds. Times are of one machine.", escapedLatex(study.title), sceneTitle(study, scene));
+    rows.caption = fmt::format("{}: medians of a frame's phases on {}, in milliseconds. Methods that share their samples share one trace, of all signals that any of them reads. Times are of one machine.", escapedLatex(study.title), sceneTitle(study, scene));
     for (const StudyMeanTime& time : times.methods) {
         if (time.scene != scene) continue;
-        std::vector<std::string> cells{escapedLatex(plan.methods[time.method].name), std::to_string(time.spp), cell(time.frameMs), cell(time.traceMs)};
+        std::vector<std::string> cells{escapedLatex(plan.methods[time.method].name), std::to_string(time.spp), cell(time.frameMs), cell(time.buildMs), cell(time.traceMs)};
         for (const std::string& stage : stages) cells.push_back(time.stagesMs.contains(stage) ? cell(time.stagesMs.at(stage)) : "--");
         cells.push_back(fmt::format("{:.3f}", time.raysPerFrame.mean * 1e-6));
         cells.push_back(time.nsPerRay.count ? cell(time.nsPerRay) : "--");

@@ -44,7 +44,7 @@ void addTimes(const StudyPlan& plan, const StudyJob& job, const json& times, Stu
     for (const auto& [name, method] : times.at("methods").items()) {
         StudyTime time{job.scene, methodNamed(plan, name), job.spp, job.seed, number(method.at("trace_ms")),
                        number(times.at("pose_ms")), number(method.at("run_ms")), number(method.at("rays_per_frame")),
-                       numbers(method.at("stages_ms"))};
+                       numbers(method.at("stages_ms")), number(times.at("build_ms"))};
         records.times.push_back(std::move(time));
     }
 }

@@ -61,10 +61,11 @@ struct StudyChoice {
 struct StudyTime {
     size_t scene = 0, method = 0;
     int spp = 1, seed = 0;
-    double traceMs = 0, poseMs = 0, runMs = 0;  ///< traceMs: of the signals; 0 if the method reads none
+    double traceMs = 0, poseMs = 0, runMs = 0;  ///< traceMs: of all signals that the job's methods read; 0 if the method reads none
     double raysPerFrame = 0;  ///< of the signals, if the method reads any, and those that it traced itself
     std::map<std::string, double> stagesMs;  ///< of run()
-    double frameMs() const { return poseMs + traceMs + runMs; }
+    double buildMs = 0;  ///< of what is traced, where things move
+    double frameMs() const { return poseMs + buildMs + traceMs + runMs; }
 };
 
 /// Everything that a study's jobs left.

@@ -1,15 +1,20 @@
 #include "study/references.h"
 
 #include "base/files.h"
+#include "base/memory.h"
 #include "measure/measure.h"
 #include "reference/reference.h"
 #include "session/reference_spec.h"
+#include "study/temporal_metrics.h"
 
 namespace lumi {
 namespace {
 
 /// References that stay in memory: those of the measured frames of one scene, usually.
 constexpr size_t kKept = 8;
+
+/// Geometry that is kept, in pixels of all frames; each takes 16 bytes.
+constexpr int64_t kGeometryPixels = int64_t(32) << 20;
 
 Measurement measured(const std::string& metric, const Image& image, const Image& reference, float exposureEv,
                      const MetricSettings& settings) {
@@ -46,6 +51,31 @@ std::shared_ptr<const StudyReferenceFrame> StudyReferences::get(const Document& 
     kept_.push_front({key, made});
     if (kept_.size() > kKept) kept_.pop_back();
     return kept_.front().frame;
+}
+
+std::shared_ptr<const Signals> StudyReferences::geometry(const Document& document, const Document& earlier, const Trace& trace) {
+    Document now = document, before = earlier;
+    if (!now.loadedScene()->isAnimated()) now.setTime(0), before.setTime(0);  // one serves all frames
+    if (geometryOf_ != now.loadedScene().get()) geometry_.clear(), geometryOf_ = now.loadedScene().get();
+    const std::string key = referenceKey(referenceSpec(now)) + referenceKey(referenceSpec(before));
+    if (const auto kept = geometry_.find(key); kept != geometry_.end()) return kept->second;
+    const auto pinhole = [](const Document& own) {
+        CameraPose camera = poseCamera(own.camera(), {own.render().width, own.render().height});
+        camera.aperture = camera.shutter = 0;
+        return camera;
+    };
+    FrameSampling sampling;
+    sampling.camera = pinhole(now), sampling.previousCamera = pinhole(before);
+    sampling.extent = sampling.camera.extent;
+    sampling.jitter = Jitter::None;
+    sampling.seed = static_cast<uint32_t>(kReferenceSeed);
+    sampling.path = now.path();
+    sampling.wanted = temporalSignals();
+    const std::shared_ptr<const Signals> traced = trace(sampling);
+    const bool fits = (static_cast<int64_t>(geometry_.size()) + 1) * sampling.extent.area() <= kGeometryPixels &&
+                      2 * residentBytes() < memoryLimit();
+    if (traced && fits) geometry_[key] = traced;
+    return traced;
 }
 
 std::shared_ptr<StudyReferenceFrame> StudyReferences::make(const Document& problem, int spp, std::stop_token stop,

@@ -11,6 +11,7 @@
 #include "image/image.h"
 #include "session/document.h"
 #include "study/study.h"
+#include "trace/tracer.h"
 
 namespace lumi {
 
@@ -39,6 +40,13 @@ public:
     /// `document`: what is to be converged, at the frame's time; `spp` 0: as the study's reference. Throws Error(Interrupted).
     std::shared_ptr<const StudyReferenceFrame> get(const Document& document, std::stop_token stop, const Report& report = {}, int spp = 0);
 
+    /// What makes the geometry that a sampling sees: temporalSignals().
+    using Trace = std::function<std::shared_ptr<const Signals>(const FrameSampling&)>;
+    /// What is seen of `document`, at the frame's time, through the middle of each pixel when the shutter opens and without a lens;
+    /// motion is against `earlier`, the document a frame before. It depends on nothing else, and is traced once for all jobs of a
+    /// scene as long as memory is left. Null if `trace` gives that.
+    std::shared_ptr<const Signals> geometry(const Document& document, const Document& earlier, const Trace& trace);
+
 private:
     struct Kept {
         std::string key;
@@ -50,6 +58,8 @@ private:
     std::filesystem::path cache_;
     MessageLog& log_;
     std::list<Kept> kept_;
+    const Scene* geometryOf_ = nullptr;  ///< as loaded
+    std::map<std::string, std::shared_ptr<const Signals>> geometry_;
 };
 
 /// The exposure at which metrics see images of a document.

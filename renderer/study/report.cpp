@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -57,7 +58,7 @@ std::string facts(const Study& study, const StudyRecords& records) {
                                                        {"Samples a pixel", joined(study.spp)},
                                                        {"Seeds", joined(study.seeds)},
                                                        {"Reference", fmt::format("{} spp", study.reference.spp)},
-                                                       {"Images measured", std::to_string(records.rows.size())}};
+                                                       {"Images measured", std::to_string(std::count_if(records.rows.begin(), records.rows.end(), [](const StudyRow& row) { return row.frame >= 0; }))}};
     std::string html;
     for (const auto& [name, value] : all) html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", name, escapedMarkup(value));
     return html;

@@ -20,12 +20,16 @@ using nlohmann::json;
 namespace {
 
 /// Wall-clock times by stage, gathered frame by frame, for their medians over all frames of the job. The first frame counts
-/// like every other, though its caches are cold.
+/// like every other, though its caches are cold. The frame's signals are traced once, all that any of the methods reads.
 class JobTimes {
 public:
     void add(const FrameOutput& frame) {
         ++frames_;
-        for (const auto& [stage, ms] : frame.stagesMs) stages_[stage].push_back(ms);
+        double builtMs = 0;  // what stays as it was is not built
+        for (const auto& [stage, ms] : frame.stagesMs)
+            if (stage == "build") builtMs += ms;
+            else stages_[stage].push_back(ms);
+        stages_["build"].push_back(builtMs);
         for (const auto& [instance, ms] : frame.runMs) runs_[instance].push_back(ms);
         // What nobody reads is traced for the metrics of sequences alone: it is no part of such a method's frame.
         for (const auto& [instance, reads] : frame.readsSignals) {
@@ -102,9 +106,13 @@ public:
     SequenceMeter(const Study& study, size_t methods) : study_(study), values_(methods) {}
 
     SignalSet signalsAt(int64_t frame) const {
-        SignalSet signals = differs(frame) || differs(frame + 1) ? temporalSignals() : SignalSet();
-        if (lags() && frame == step()) signals |= SignalSet{Signal::Emission, Signal::Depth};
-        return signals;
+        return lags() && frame == step() ? SignalSet{Signal::Emission, Signal::Depth} : SignalSet();
+    }
+    /// Is the motion of the reference wanted?
+    bool wantsGeometry(int64_t frame) const {
+        const bool follows = std::any_of(study_.temporalMetrics.begin(), study_.temporalMetrics.end(),
+                                         [](const std::string& id) { return findTemporalMetric(id)->followsMotion; });
+        return follows && (differs(frame) || differs(frame + 1));
     }
     /// Are the references of before (the frame before the step) and after it wanted?
     bool wantsReference(int64_t frame) const { return lags() && (frame == step() - 1 || frame == step()); }
@@ -116,16 +124,17 @@ public:
         const Image mask = litSurfaces(*frame.signals);
         lags_.assign(values_.size(), LagMeter(before_, reference, &mask));
     }
-    /// The results of a frame, a method each.
-    void add(const FrameOutput& frame, const std::vector<std::shared_ptr<const Image>>& images, float exposureEv) {
+    /// The results of a frame, a method each; `geometry` where it is wanted.
+    void add(const FrameOutput& frame, const std::vector<std::shared_ptr<const Image>>& images, std::shared_ptr<const Signals> geometry,
+             float exposureEv) {
         for (size_t i = 0; i < images.size() && differs(frame.number); ++i) {
-            const TemporalInput input{*images[i], *previous_[i], *frame.signals, *previousSignals_, exposureEv};
+            const TemporalInput input{*images[i], *previous_[i], geometry.get(), previousGeometry_.get(), exposureEv};
             for (const std::string& id : study_.temporalMetrics)
                 if (const auto measure = findTemporalMetric(id)->measure) values_[i][id].push_back(measure(input));
         }
         for (size_t i = 0; i < lags_.size(); ++i) lags_[i].add(*images[i]);
         previous_ = images;
-        previousSignals_ = frame.signals;
+        previousGeometry_ = std::move(geometry);
     }
     json toJson(size_t method) const {
         json metrics = json::object();
@@ -151,7 +160,7 @@ private:
     }
     const Study& study_;
     std::vector<std::shared_ptr<const Image>> previous_;
-    std::shared_ptr<const Signals> previousSignals_;
+    std::shared_ptr<const Signals> previousGeometry_;
     std::vector<std::map<std::string, std::vector<double>>> values_;
     Image before_;
     std::vector<LagMeter> lags_;
@@ -219,7 +228,7 @@ json runMeasureJob(const JobContext& context, const StudyJob& job, const std::fi
         if (sequence.wantsReference(number)) sequence.addReference(frame, reference(number)->image);
         std::vector<std::shared_ptr<const Image>> images;
         for (const RunningMethod& method : runner.methods()) images.push_back(frame.results.at(method.instance));
-        sequence.add(frame, images, runner.exposure());
+        sequence.add(frame, images, sequence.wantsGeometry(number) ? runner.geometry() : nullptr, runner.exposure());
         if (!isMeasured) continue;
         const auto measured = reference(number);
         result["references"].push_back(referenceJson(study, job, number, *measured, runner.exposure(), out));

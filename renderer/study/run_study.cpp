@@ -71,9 +71,9 @@ private:
         const std::string program = programDigest();
         for (job_ = 0; job_ < plan_.jobs.size(); ++job_) {
             const StudyJob& job = plan_.jobs[job_];
-            const std::string content = job.definition + sceneOf(job)->contentDigest + isaName(activeIsa()) + program;
+            const std::string content = job.definition + sceneOf(job)->contentDigest + isaName(activeIsa()) + program +
+                                        checkJobValues(contextOf(job), job);
             folders_.push_back(job.id + "-" + digest({reinterpret_cast<const uint8_t*>(content.data()), content.size()}).substr(0, 8));
-            checkJobValues(contextOf(job), job);
             if (!isThere(job_)) continue;
             ++outcome_.jobsFound;
             clock_.found(job_);

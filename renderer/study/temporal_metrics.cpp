@@ -7,10 +7,11 @@ namespace {
 
 TemporalPair pairOf(const TemporalInput& input) {
     TemporalPair pair{input.image, input.previous};
-    pair.motion = &input.signals[Signal::Motion];
-    pair.depth = &input.signals[Signal::Depth];
-    pair.previousDepth = &input.previousSignals[Signal::Depth];
     pair.exposureEv = input.exposureEv;
+    if (!input.geometry || !input.previousGeometry) return pair;
+    pair.motion = &(*input.geometry)[Signal::Motion];
+    pair.depth = &(*input.geometry)[Signal::Depth];
+    pair.previousDepth = &(*input.previousGeometry)[Signal::Depth];
     return pair;
 }
 
@@ -27,7 +28,7 @@ const std::vector<TemporalMetric>& temporalMetricCatalog() {
     static const std::vector<TemporalMetric> catalog = [] {
         std::vector<TemporalMetric> list;
         for (const SequenceMetric& metric : sequenceMetricCatalog())
-            list.push_back({metric.id, metric.title, metric.definition, measureOf(metric.id)});
+            list.push_back({metric.id, metric.title, metric.definition, measureOf(metric.id), metric.id == std::string("temporal_reprojected")});
         return list;
     }();
     return catalog;

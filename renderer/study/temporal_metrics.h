@@ -6,12 +6,12 @@
 
 namespace lumi {
 
-/// Two consecutive frames of one method, with the signals of both: they hold temporalSignals().
+/// Two consecutive frames of one method, and how the points moved that the reference sees in them.
 struct TemporalInput {
     const Image& image;
     const Image& previous;
-    const Signals& signals;
-    const Signals& previousSignals;
+    const Signals* geometry = nullptr;          ///< of the later frame, with temporalSignals(); null for metrics that follow nothing
+    const Signals* previousGeometry = nullptr;
     float exposureEv = 0;
 };
 
@@ -22,13 +22,14 @@ struct TemporalMetric {
     const char* title;
     const char* definition;
     double (*measure)(const TemporalInput& input);
+    bool followsMotion = false;  ///< `geometry` is wanted
 };
 
 const std::vector<TemporalMetric>& temporalMetricCatalog();
 /// Null for an id that is not in the catalogue.
 const TemporalMetric* findTemporalMetric(const std::string& id);
 
-/// What the metrics read: motion and depth of what is seen first.
+/// What those metrics read that follow the motion of what is seen: motion and depth.
 SignalSet temporalSignals();
 
 }  // namespace lumi

@@ -37,6 +37,7 @@ std::vector<StudyMeanTime> meanTimes(const Study& study, const StudyRecords& rec
         std::tie(mean.scene, mean.spp, mean.method) = key;
         mean.frameMs = timeInterval(study, times, [](const StudyTime& time) { return time.frameMs(); });
         mean.poseMs = timeInterval(study, times, [](const StudyTime& time) { return time.poseMs; });
+        mean.buildMs = timeInterval(study, times, [](const StudyTime& time) { return time.buildMs; });
         mean.traceMs = timeInterval(study, times, [](const StudyTime& time) { return time.traceMs; });
         mean.runMs = timeInterval(study, times, [](const StudyTime& time) { return time.runMs; });
         mean.raysPerFrame = timeInterval(study, times, [](const StudyTime& time) { return time.raysPerFrame; });
@@ -79,6 +80,14 @@ TimeCurve timeCurve(const StudyTimes& times, const SeedCurve& curve, size_t scen
     return result;
 }
 
+/// Several methods, each with its sample counts, are one curve by what they cost.
+void sortByTime(TimeCurve& curve) {
+    std::vector<std::pair<double, double>> points;
+    for (size_t i = 0; i < curve.ms.size(); ++i) points.emplace_back(curve.ms[i], curve.value[i]);
+    std::sort(points.begin(), points.end());
+    for (size_t i = 0; i < points.size(); ++i) std::tie(curve.ms[i], curve.value[i]) = points[i];
+}
+
 /// One seed's numbers of a pair.
 struct SeedEqual {
     double otherAtTime = kNaN, otherMs = kNaN;
@@ -99,6 +108,7 @@ void addPair(const Study& study, const StudyPlan& plan, const StudyRowIndex& row
             all.ms.insert(all.ms.end(), part.ms.begin(), part.ms.end());
             all.value.insert(all.value.end(), part.value.begin(), part.value.end());
         }
+        if (others.size() > 1) sortByTime(all);
         return all;
     };
     std::vector<double> values, atTime, differences, otherMs, ratios;

@@ -11,7 +11,7 @@ namespace lumi {
 struct StudyMeanTime {
     size_t scene = 0, method = 0;
     int spp = 1;
-    Interval frameMs, poseMs, traceMs, runMs, raysPerFrame;
+    Interval frameMs, poseMs, buildMs, traceMs, runMs, raysPerFrame;
     std::map<std::string, Interval> stagesMs;  ///< of run()
     std::vector<double> frameMsBySeed;         ///< in the study's order; NaN where the seed did not run
     std::vector<double> runMsBySeed, nsPerRayBySeed;  ///< the same; of run(), and of trace and run() over all their rays

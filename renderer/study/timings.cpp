@@ -14,6 +14,7 @@ Json rowJson(const Study& study, const StudyPlan& plan, const StudyMeanTime& tim
     Json row = headJson(study, plan, time.scene, time.method, time.spp);
     row["frame_ms"] = intervalJson(time.frameMs);
     row["pose_ms"] = intervalJson(time.poseMs);
+    row["build_ms"] = intervalJson(time.buildMs);
     row["trace_ms"] = intervalJson(time.traceMs);
     row["run_ms"] = intervalJson(time.runMs);
     row["rays_per_frame"] = intervalJson(time.raysPerFrame);

@@ -89,11 +89,12 @@ class Results(StudyTest):
         times = json.loads((out / "timings.json").read_text())
         self.assertEqual(len(times["rows"]), 8)
         for row in times["rows"]:
-            for part in (row["frame_ms"], row["trace_ms"], *row["stages_ms"].values()):
+            for part in (row["frame_ms"], row["build_ms"], row["trace_ms"], *row["stages_ms"].values()):
                 self.assertGreaterEqual(part["mean"], 0)
                 self.assertLessEqual(part["low"], part["mean"], "every time has its interval")
         self.assertIn("equivalent_spp", results["equivalent_samples"][0])
         self.assertEqual(results["nonfinite"], [])
+        self.assertIn("<dt>Images measured</dt><dd>32</dd>", (out / "report.html").read_text(), "sequences are no images")
         # Without its history the mean is the raw frame: twice to thrice the error at frames 1 and 2.
         effect = {(a["scene"], a["spp"], a["metric"]): a for a in results["ablations"]}["cornell", 1, "mse"]
         self.assertEqual((effect["entry"], effect["stage"], effect["difference"]["count"]), ("mean", "history", 2))

@@ -51,24 +51,24 @@ function addAblations() {
 const phaseColour = (phases, i) => i === phases.length - 1 ? "var(--line)" : colourOf(i);
 
 function timeBars(scene) {
-  const own = times.rows.filter(r => r.scene === scene), phases = ["pose", "trace", ...new Set(own.flatMap(r => Object.keys(r.stages_ms))), "rest of the method"];
+  const own = times.rows.filter(r => r.scene === scene), phases = ["pose", "build", "trace", ...new Set(own.flatMap(r => Object.keys(r.stages_ms))), "rest of the method"];
   const several = own.some(o => o.spp !== own[0].spp);
   const rows = own.slice(0, 40).map(r => {
     const staged = Object.values(r.stages_ms).reduce((sum, s) => sum + s.mean, 0);
-    const value = p => p === "pose" ? r.pose_ms.mean : p === "trace" ? r.trace_ms.mean : p === "rest of the method" ? Math.max(r.run_ms.mean - staged, 0) : r.stages_ms[p] ? r.stages_ms[p].mean : 0;
+    const value = p => p === "pose" ? r.pose_ms.mean : p === "build" ? r.build_ms.mean : p === "trace" ? r.trace_ms.mean : p === "rest of the method" ? Math.max(r.run_ms.mean - staged, 0) : r.stages_ms[p] ? r.stages_ms[p].mean : 0;
     return { name: several ? `${shortName(r.entry)}, ${r.spp} spp` : shortName(r.entry), parts: phases.map((p, i) => ({ name: p, value: value(p), colour: phaseColour(phases, i) })),
              note: half(r.frame_ms) === null ? "" : `± ${shownHalf(half(r.frame_ms), r.frame_ms.mean, 3)}` };
   });
-  return `<figure><figcaption>${escapeText(scene)}<small>milliseconds a frame</small></figcaption>${barChart({ rows, unit: "ms" })}` +
+  return `<figure><figcaption>${escapeText(scene)}<small>milliseconds a frame; methods that share their samples share one trace, of all signals that any of them reads</small></figcaption>${barChart({ rows, unit: "ms" })}` +
     `${legend(phases.map((name, i) => ({ name, colour: phaseColour(phases, i) })))}</figure>`;
 }
 
 /** Every phase with its interval. */
 function timeTable(scene) {
   const own = times.rows.filter(r => r.scene === scene), stages = [...new Set(own.flatMap(r => Object.keys(r.stages_ms)))];
-  return `<details><summary>Every stage, with intervals</summary><table><thead><tr><th></th><th>spp</th><th>frame</th><th>pose</th><th>trace</th><th>method</th>` +
+  return `<details><summary>Every stage, with intervals</summary><table><thead><tr><th></th><th>spp</th><th>frame</th><th>pose</th><th>build</th><th>trace</th><th>method</th>` +
     stages.map(s => `<th>${escapeText(s)}</th>`).join("") + `<th>rays a frame</th><th>ns a ray, whole frame</th>${own.some(r => r.tracing_ns_per_ray) ? "<th>ns a ray, tracing alone</th>" : ""}</tr></thead><tbody>` +
-    own.map(r => `<tr>${entryCell(r.entry)}<td>${r.spp}</td>` + [r.frame_ms, r.pose_ms, r.trace_ms, r.run_ms, ...stages.map(s => r.stages_ms[s])].map(t => `<td>${t ? interval(t) : "–"}</td>`).join("") +
+    own.map(r => `<tr>${entryCell(r.entry)}<td>${r.spp}</td>` + [r.frame_ms, r.pose_ms, r.build_ms, r.trace_ms, r.run_ms, ...stages.map(s => r.stages_ms[s])].map(t => `<td>${t ? interval(t) : "–"}</td>`).join("") +
       `<td>${Math.round(r.rays_per_frame.mean).toLocaleString("en")}</td>${[r.ns_per_ray, r.tracing_ns_per_ray].map(t => t ? `<td>${t.count ? interval(t) : "–"}</td>` : "").join("")}</tr>`).join("") + "</tbody></table></details>";
 }
 

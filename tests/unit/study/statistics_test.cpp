@@ -122,5 +122,31 @@ TEST(Statistics, PairsTakeSeveralEntriesAsOneCurve) {
     EXPECT_NEAR(times.pairs[0].otherMsAtEqualValue.mean, 32, 1e-6);
 }
 
+/// Two methods at two sample counts each, whose costs lie between one another's: one curve by cost, which bends.
+TEST(Times, SeveralMethodsAreOneCurveByWhatTheyCost) {
+    const Study study = parseStudy(R"({"version": 1, "scenes": ["cornell"], "seeds": [1, 2], "spp": [1, 2], "metrics": ["mse"],
+        "entries": [{"name": "m", "module": "none"}, {"name": "a", "module": "none"}, {"name": "b", "module": "none"}],
+        "pairs": [{"entry": "m", "against": ["a", "b"]}]})", "s.json", "");
+    const StudyPlan plan = planStudy(study);
+    StudyRecords records;
+    const double ms[3][2] = {{12, 12}, {8, 32}, {16, 64}}, mse[3][2] = {{2.5, 2.5}, {8, 2}, {3, 1}};
+    for (const int seed : study.seeds)
+        for (const int spp : study.spp)
+            for (size_t method = 0; method < 3; ++method) {
+                StudyTime time;
+                time.method = method, time.spp = spp, time.seed = seed, time.runMs = ms[method][spp - 1];
+                records.times.push_back(time);
+                StudyRow row;
+                row.method = method, row.spp = spp, row.seed = seed, row.frame = 0;
+                row.metrics = {{"mse", mse[method][spp - 1]}};
+                records.rows.push_back(row);
+            }
+    const StudyTimes times = summarizeTimes(study, plan, records);
+    ASSERT_EQ(times.pairs.size(), 2u);
+    const double at = std::log(12.0 / 8) / std::log(2.0), reached = std::log(2.5 / 3) / std::log(2.0 / 3);
+    EXPECT_NEAR(times.pairs[0].otherAtEqualTime.mean, std::pow(8, 1 - at) * std::pow(3, at), 1e-9);
+    EXPECT_NEAR(times.pairs[0].otherMsAtEqualValue.mean, 16 * std::pow(2, reached), 1e-9);
+}
+
 }  // namespace
 }  // namespace lumi::test
