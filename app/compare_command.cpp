@@ -5,6 +5,7 @@
 #include "app/compare_parts.h"
 #include "base/error.h"
 #include "measure/temporal.h"
+#include "params/json_text.h"
 
 namespace lumi {
 using nlohmann::ordered_json;
@@ -58,7 +59,7 @@ void printJson(const ComparedPair& compared, const MetricResults& results, const
     for (const char* key : {"metrics", "details", "no_value"}) report[key] = ordered_json::object();
     for (const auto& [metric, result] : results) addMeasurement(report, metric->id, result);
     if (maps.wanted()) report["maps"] = maps.ranges();
-    fmt::print("{}\n", report.dump(2));
+    fmt::print("{}\n", jsonText(report, 2));
 }
 
 }  // namespace

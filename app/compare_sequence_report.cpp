@@ -6,6 +6,7 @@
 
 #include "app/compare_parts.h"
 #include "app/compare_sequence.h"
+#include "params/json_text.h"
 
 namespace lumi {
 using nlohmann::ordered_json;
@@ -45,7 +46,7 @@ void printJson(const SequenceReport& report) {
     }
     if (!report.maps.is_null()) all["maps"] = report.maps;
     all["frames"] = report.frames;
-    fmt::print("{}\n", all.dump(2));
+    fmt::print("{}\n", jsonText(all, 2));
 }
 
 /// Frames that a metric's mean leaves out, with the first one's reason.

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/memory.h"
+#include "params/json_text.h"
 #include "scene/gltf/choices.h"
 #include "scene/light_body.h"
 #include "scene/material_textures.h"
@@ -217,7 +218,7 @@ int runInfo(const SceneOptions& options, bool check, const std::filesystem::path
     json info = infoJson(*scene, file, memory, log);
     addChoices(file, document, info);
     if (check) info["checks"] = checksJson(checks);
-    if (machine.json) std::puts(info.dump(2).c_str());
+    if (machine.json) std::puts(jsonText(info, 2).c_str());
     else printInfo(info, *scene, memory);
     if (check && !machine.json) printChecks(checks);
     return std::all_of(checks.begin(), checks.end(), [](const FrameCheck& frame) { return frame.holds(); }) ? 0 : 1;

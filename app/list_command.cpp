@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "measure/temporal.h"
 #include "params/json.h"
+#include "params/json_text.h"
 #include "reconstruct/catalog.h"
 #include "study/bench.h"
 #include "study/study_file.h"
@@ -34,7 +35,7 @@ void printTable(const std::vector<Row>& rows) {
 }
 
 void print(const MachineOptions& machine, const json& all, const std::vector<Row>& rows) {
-    if (machine.json) std::puts(all.dump(2).c_str());
+    if (machine.json) std::puts(jsonText(all, 2).c_str());
     else printTable(rows);
 }
 

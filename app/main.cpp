@@ -1,4 +1,7 @@
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <system_error>
 
 #include "app/bench_command.h"
 #include "app/cli.h"
@@ -73,6 +76,13 @@ int runCommand(const CommandLine& line) {
     return 0;
 }
 
+/// Throws Error(Resources) if something of the results did not reach standard output, as on a full disk.
+void requireWholeOutput() {
+    const bool flushed = std::fflush(stdout) == 0;
+    const std::string reason = flushed ? "" : std::string(" (") + std::strerror(errno) + ")";
+    if (!flushed || std::ferror(stdout)) throw Error(ErrorKind::Resources, {"standard output could not be written" + reason, "", "", ""});
+}
+
 }  // namespace
 }  // namespace lumi
 
@@ -80,13 +90,19 @@ int main(int argc, char** argv) {
     // Where both streams go to one file or pipe, lines keep their order.
     std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
     try {
-        return lumi::runCommand(lumi::parseCommandLine(argc, argv));
+        const int code = lumi::runCommand(lumi::parseCommandLine(argc, argv));
+        lumi::requireWholeOutput();
+        return code;
     } catch (const lumi::Error& error) {
         std::fprintf(stderr, "lumiscope: %s\n", error.what());
         return error.exitCode();
     } catch (const std::bad_alloc&) {
         std::fputs("lumiscope: out of memory\n", stderr);
         return static_cast<int>(lumi::ErrorKind::Resources);
+    } catch (const std::system_error& error) {
+        std::fprintf(stderr, "lumiscope: %s\n", error.what());
+        const bool full = error.code() == std::errc::no_space_on_device;
+        return static_cast<int>(full ? lumi::ErrorKind::Resources : lumi::ErrorKind::BadInput);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "lumiscope: %s\n", error.what());
         return static_cast<int>(lumi::ErrorKind::BadInput);

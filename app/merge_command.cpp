@@ -8,6 +8,7 @@
 #include "app/reference_picture.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "params/json_text.h"
 #include "reference/finished_reference.h"
 #include "reference/reference_part.h"
 
@@ -42,7 +43,7 @@ int runMerge(const MergeCommand& options, const MachineOptions& machine) {
         ReferencePicture::parse(state.note, options.parts.front()).write(options.out, reference, "", nullptr);
         result["error"] = std::isfinite(reference.error) ? nlohmann::json(reference.error) : nlohmann::json();
     }
-    if (machine.json) std::puts(result.dump(2).c_str());
+    if (machine.json) std::puts(jsonText(result, 2).c_str());
     if (!machine.quiet) std::fputs(fmt::format("Wrote {}: samples {}..{}\n", options.out, range.begin, range.end).c_str(), stderr);
     return 0;
 }

@@ -17,6 +17,7 @@
 #include "base/files.h"
 #include "base/memory.h"
 #include "base/timer.h"
+#include "params/json_text.h"
 #include "reference/finished_reference.h"
 #include "reference/reference_part.h"
 #include "session/reference_spec.h"
@@ -168,7 +169,7 @@ private:
             const std::string extension = lowerExtension(names_[0]);
             if (extension == ".exr" || extension == ".png" || extension == ".mp4")
                 throwUsage({"a part holds sums for `lumiscope merge`, no image", names_[0], "a name like part.lumiref", ""});
-            return;
+            return requireWritable(numberedName(names_[0], options_.frames.begin));
         }
         const bool many = options_.frames.end - options_.frames.begin > 1;
         if (names_.empty()) {
@@ -184,7 +185,9 @@ private:
             if (extension != ".exr" && extension != ".png")
                 throwUsage({"cannot write this kind of file", name, ".exr or .png", '"' + extension + '"'});
             if (many && !numbered) throwUsage({"each frame is a file of its own", name, "%04d in the name", ""});
-            if (fs::is_directory(name)) throwUsage({"is a folder", name, "a file name", ""});
+            std::error_code failure;
+            if (fs::is_directory(name, failure)) throwUsage({"is a folder", name, "a file name", ""});
+            requireWritable(numberedName(name, options_.frames.begin));
         }
     }
 
@@ -251,7 +254,7 @@ private:
                                  {"files", files_},
                                  {"peak_memory_bytes", peakResidentBytes()},
                                  {"warnings", log_.warnings()}};
-            std::puts(result.dump(2).c_str());
+            std::puts(jsonText(result, 2).c_str());
         }
         if (machine_.quiet) return;
         for (size_t i = 0; i < std::min<size_t>(files_.size(), 4); ++i) std::fputs(("Wrote " + files_[i] + "\n").c_str(), stderr);

@@ -210,7 +210,7 @@ private:
     }
 
     void endSequence(int64_t begin, int64_t end) {
-        outputs_->finish(begin, end);
+        outputs_->finish(begin, end, stop_);
         files_.insert(files_.end(), outputs_->files().begin(), outputs_->files().end());
     }
     int finish() {

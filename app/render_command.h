@@ -17,8 +17,8 @@ namespace lumi {
 /// left half written.
 class RenderOutputs {
 public:
-    /// Checks every name before the first ray. Without an ffmpeg program a video becomes numbered PNGs, and a warning.
-    /// Throws Error(Usage).
+    /// Checks every name before the first ray, and that its folder, which is created, can be written. Without an ffmpeg program
+    /// a video becomes numbered PNGs, and a warning. Throws Error(Usage), Error(Resources).
     RenderOutputs(const std::vector<std::string>& names, const OutputChoice& choice, double fps, MessageLog& log);
 
     /// Does the frame go into an EXR, so that its layers have to be there?
@@ -26,8 +26,8 @@ public:
     void write(const FrameOutput& frame, const Document& document, const StateLog& log, bool last);
     /// Is the frame what its files hold, to the byte? Throws Error(Usage) naming one that holds something else.
     void verify(const FrameOutput& frame, const Document& document, const StateLog& log) const;
-    /// Makes the videos of frames [begin, end).
-    void finish(int64_t begin, int64_t end);
+    /// Makes the videos of frames [begin, end). Throws Error(Interrupted); the frames stay then.
+    void finish(int64_t begin, int64_t end, std::stop_token stop = {});
 
     const std::vector<std::string>& files() const { return files_; }  ///< written, videos but not their frames
     std::vector<std::string> numberedFiles(int64_t frame) const;
@@ -43,7 +43,7 @@ private:
         std::filesystem::path video;  ///< that these frames are of; empty: of none
     };
     Output videoFrames(const std::string& name) const;
-    void finishVideo(const Output& output, int64_t begin, int64_t end);
+    void finishVideo(const Output& output, int64_t begin, int64_t end, std::stop_token stop);
 
     std::vector<Output> outputs_;
     OutputChoice choice_;

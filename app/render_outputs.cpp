@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <thread>
 
 #include "app/render_command.h"
 #include "base/error.h"
@@ -100,20 +102,23 @@ RenderOutputs::RenderOutputs(const std::vector<std::string>& names, const Output
             throwUsage({"cannot write this kind of file", name, ".exr, .png or .mp4", '"' + output.extension + '"'});
         if (output.extension == ".mp4" && output.numbered)
             throwUsage({"a video holds all frames", name, "a name without %d", ""});
-        if (fs::is_directory(name)) throwUsage({"is a folder", name, "a file name", ""});
+        std::error_code failure;  // what cannot be looked at cannot be written either
+        if (fs::is_directory(name, failure)) throwUsage({"is a folder", name, "a file name", ""});
         if (output.extension == ".mp4" && VideoPipe::available()) {
             output = videoFrames(name);
         } else if (output.extension == ".mp4") {
             output = {fs::path(name).replace_extension(".%04d.png").string(), ".png", true, {}};
             log.warning(fmt::format("{}: no ffmpeg program to write video with; writing {}", name, output.name));
         }
+        requireWritable(output.video.empty() ? fs::path(numberedName(output.name, 0)) : output.video);
         outputs_.push_back(output);
     }
 }
 
 RenderOutputs::Output RenderOutputs::videoFrames(const std::string& name) const {
     const fs::path video = numberedName(name, 0);
-    if (fs::exists(video)) throwUsage({"exists already", video.string(), "a new file", ""});
+    std::error_code failure;
+    if (fs::exists(video, failure)) throwUsage({"exists already", video.string(), "a new file", ""});
     removeLeftovers(video);
     return {name + ".frames/%06d.png", ".png", true, video};  // % in the name stays doubled
 }
@@ -168,15 +173,25 @@ void RenderOutputs::verify(const FrameOutput& frame, const Document& document, c
     }
 }
 
-void RenderOutputs::finishVideo(const Output& output, int64_t begin, int64_t end) {
+void RenderOutputs::finishVideo(const Output& output, int64_t begin, int64_t end, std::stop_token stop) {
     std::unique_ptr<VideoPipe> pipe;
-    for (int64_t frame = begin; frame < end; ++frame) {
-        const Image8 picture = readPng(numberedName(output.name, frame)).image8();
-        if (!pipe) pipe = std::make_unique<VideoPipe>(output.video, picture.extent, fps_);
-        pipe->write(picture);
+    const auto requireGoingOn = [&] {
+        if (stop.stop_requested()) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
+    };
+    try {
+        for (int64_t frame = begin; frame < end; ++frame) {
+            requireGoingOn();
+            const Image8 picture = readPng(numberedName(output.name, frame)).image8();
+            if (!pipe) pipe = std::make_unique<VideoPipe>(output.video, picture.extent, fps_);
+            pipe->write(picture);
+        }
+        if (!pipe) return;
+        pipe->finish();
+    } catch (const Error&) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));  // an interrupt of the terminal ends ffmpeg, too, and maybe first
+        requireGoingOn();
+        throw;
     }
-    if (!pipe) return;
-    pipe->finish();
     files_.push_back(output.video.string());
     for (int64_t frame = begin; frame < end; ++frame) fs::remove(numberedName(output.name, frame));
     const fs::path folder = fs::path(numberedName(output.name, begin)).parent_path();
@@ -185,9 +200,9 @@ void RenderOutputs::finishVideo(const Output& output, int64_t begin, int64_t end
     fs::remove(folder, notEmpty);  // unless others keep files there
 }
 
-void RenderOutputs::finish(int64_t begin, int64_t end) {
+void RenderOutputs::finish(int64_t begin, int64_t end, std::stop_token stop) {
     for (const Output& output : outputs_)
-        if (!output.video.empty()) finishVideo(output, begin, end);
+        if (!output.video.empty()) finishVideo(output, begin, end, stop);
 }
 
 }  // namespace lumi

@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "math/statistics.h"
+#include "params/json_text.h"
 #include "session/ray_rate.h"
 
 namespace lumi {
@@ -39,7 +40,7 @@ void RenderSummary::print(const std::vector<std::string>& files, const MachineOp
                              {"mrays_per_s", mraysPerSecond}, {"files", files},
                              {"peak_memory_bytes", peakResidentBytes()}, {"module_bytes", moduleBytes_},
                              {"warnings", log.warnings()}};
-        std::puts(result.dump(2).c_str());
+        std::puts(jsonText(result, 2).c_str());
     }
     if (machine.quiet) return;
     const size_t shown = std::min<size_t>(files.size(), 4);

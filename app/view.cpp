@@ -7,6 +7,7 @@
 #include "app/view_driver.h"
 #include "app/view_script.h"
 #include "base/parallel.h"
+#include "params/json_text.h"
 
 namespace lumi {
 
@@ -38,7 +39,7 @@ int runView(const ViewOptions& options) {
     }
     const nlohmann::json report = driver.report();
     if (options.json) {
-        std::printf("%s\n", report.dump(1).c_str());
+        std::printf("%s\n", jsonText(report, 1).c_str());
     } else {
         for (const auto& file : report["files"]) std::printf("%s\n", file.get<std::string>().c_str());
         if (!options.quiet)

@@ -182,6 +182,24 @@ class Render(CommandTest):
         self.assertLess(time.time() - started, 20)
         self.assertEqual(self.files(), [])
 
+    def test_an_interrupt_ends_a_video_and_keeps_its_frames(self):
+        (self.folder / "bin").mkdir()
+        stuck = self.folder / "bin/ffmpeg"
+        stuck.write_text("#!/bin/sh\nexec sleep 200\n")
+        stuck.chmod(0o755)
+        process = subprocess.Popen([PROGRAM, "render", "cornell", *QUIET, "--frames", "3", "--out", "a.mp4"], cwd=self.folder,
+                                   stderr=subprocess.PIPE, start_new_session=True, env={**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}"})
+        begun = time.time()
+        while len(list(self.folder.glob("a.mp4.frames/*.png"))) < 3 and time.time() - begun < 100:
+            time.sleep(0.05)
+        time.sleep(1)
+        os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+        _, error = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, b"interrupted" in error), (130, True), error)
+        self.assertEqual(len(list(self.folder.glob("a.mp4.frames/*.png"))), 3)
+        self.good("render", "cornell", *QUIET, "--frames", "3", "--out", "a.mp4")
+        self.assertEqual(self.files(), ["a.mp4", "bin"])
+
     def test_progress_when_asked_for(self):
         result = self.good("render", "cornell", "--size", "400x300", "--spp", 24, "--out", "a.png", "--progress", "always")
         self.assertIn("%", result.err)

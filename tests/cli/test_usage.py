@@ -1,5 +1,9 @@
 """Exit codes and messages: what is refused, how, and with which number."""
-from lumiscope import CommandTest, SOURCE, TINY, main
+import os
+import shutil
+import subprocess
+
+from lumiscope import CommandTest, PROGRAM, SOURCE, TINY, main
 
 
 class Usage(CommandTest):
@@ -99,7 +103,34 @@ class Usage(CommandTest):
 
     def test_a_folder_that_cannot_be_written(self):
         (self.folder / "file").write_text("")
-        self.refused(2, ["file/a.png"], "render", "cornell", *TINY, "--quiet", "--out", "file/a.png")
+        # Found out before the first of so many samples.
+        for command in ("render", "reference"):
+            self.refused(2, ["file/a.png", "folder cannot be created", "Not a directory"], command, "cornell", "--spp", 65536, "--quiet",
+                         "--out", "file/a.png", timeout=60, XDG_CACHE_HOME=self.folder / "cache")
+        self.refused(2, ["too long"], "render", "cornell", "--spp", 65536, "--quiet", "--out", 252 * "n" + ".png", timeout=60)
+
+    def test_a_name_as_long_as_they_get(self):
+        name = 251 * "n" + ".png"
+        self.good("render", "cornell", *TINY, "--quiet", "--out", name)
+        self.assertEqual(self.files(), [name])
+
+    def test_a_full_disk_under_standard_output(self):
+        for arguments in (["list", "modules", "--json"], ["--help"], ["render", "cornell", *TINY, "--quiet", "--json", "--out", "a.png"]):
+            with open("/dev/full", "w") as full:
+                process = subprocess.run([PROGRAM, *arguments], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, timeout=100)
+            self.assertEqual(process.returncode, 5, arguments)
+            self.assertIn(b"standard output could not be written", process.stderr)
+
+    def test_names_that_are_no_utf_8(self):
+        scene = os.fsdecode(b"bad\xff.json")
+        shutil.copy(SOURCE / "scenes/cornell.json", self.folder / scene)
+        told = self.good("render", scene, *TINY, "--quiet", "--json", "--out", os.fsdecode(b"o\xff.png")).json
+        self.assertEqual(told["files"], ["o\ufffd.png"])
+        self.good("info", scene, "--quiet", "--json").json
+        # The scene cannot be found by the state's name, but given beside it.
+        os.rename(self.folder / os.fsdecode(b"o\xff.png"), self.folder / "o.png")
+        self.good("render", scene, "--replay", "o.png", "--quiet", "--out", "again.png")
+        self.assertEqual(self.bytes("again.png")[:8], self.bytes("o.png")[:8])
 
 
 if __name__ == "__main__":
