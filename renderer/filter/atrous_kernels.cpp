@@ -42,7 +42,7 @@ LUMI_LANES void start(const AtrousRow& row, int component, std::ptrdiff_t at, in
     const Lanes h = lanes(kSpline[2] * kSpline[2]);  // the pixel itself: w(p, p) = 1
     const Lanes variance = steeringVariance<Edge>(row, in.sampleVariance, at, x) + lanes(kVarianceEpsilon);
     c.luminance = span.load(in.luminance + at);
-    c.scale = atLeast(roughInverseRoot(variance) * lanes(kLog2E / row.guide.edges.sigmaLuminance), lanes(0.0f));
+    c.scale = atLeast(inverseRoot(variance) * lanes(kLog2E / row.guide.edges.sigmaLuminance), lanes(0.0f));
     c.weight = h;
     c.r = h * span.load(in.rgb[0] + at);
     c.g = h * span.load(in.rgb[1] + at);

@@ -94,7 +94,7 @@ public:
     template <class Body>
     LUMI_LANES void forPair(const TapPair& pair, Body body) const {
         const Lanes rise = mulAdd(slopeX_, lanes(pair.fx), slopeY_ * lanes(pair.fy));
-        const Lanes perDistance = roughReciprocal(mulAdd(perRise_, absolute(rise), least_)), logH = lanes(pair.logH);
+        const Lanes perDistance = reciprocal(mulAdd(perRise_, absolute(rise), least_)), logH = lanes(pair.logH);
         const auto tap = [&](bool plus) LUMI_LANES_LAMBDA {
             const Lanes planeRise = Usual || !row_.edges.planeDistance ? lanes(0.0f) : rise;
             return plus ? compare(pair.dx, pair.offset, z_ + planeRise, perDistance, logH)

@@ -30,10 +30,9 @@ LUMI_LANES Lanes subMul(Lanes c, Lanes a, Lanes b) { return _mm512_fnmadd_ps(a, 
 /// |a - b|, or 1e30 where that is larger or no number.
 LUMI_LANES Lanes distanceOf(Lanes a, Lanes b) { return _mm512_maskz_range_ps(kAllLanes, a - b, lanes(1e30f), 10); }
 LUMI_LANES Lanes absolute(Lanes v) { return _mm512_abs_ps(v); }
-/// 1/v to 14 bits at least.
-LUMI_LANES Lanes roughReciprocal(Lanes v) { return _mm512_maskz_rcp14_ps(kAllLanes, v); }
-/// 1/sqrt(v) to 14 bits at least.
-LUMI_LANES Lanes roughInverseRoot(Lanes v) { return _mm512_maskz_rsqrt14_ps(kAllLanes, v); }
+// Divisions and roots, not their estimates: of these the sets promise an error alone, and makers differ in the bits.
+LUMI_LANES Lanes reciprocal(Lanes v) { return lanes(1.0f) / v; }
+LUMI_LANES Lanes inverseRoot(Lanes v) { return lanes(1.0f) / _mm512_maskz_sqrt_ps(kAllLanes, v); }
 /// `otherwise` where v is NaN; atMost() too.
 LUMI_LANES Lanes atLeast(Lanes v, Lanes otherwise) { return _mm512_maskz_max_ps(kAllLanes, v, otherwise); }
 LUMI_LANES Lanes atMost(Lanes v, Lanes otherwise) { return _mm512_maskz_min_ps(kAllLanes, v, otherwise); }
@@ -65,10 +64,10 @@ LUMI_LANES Lanes mulAdd(Lanes a, Lanes b, Lanes c) { return _mm256_fmadd_ps(a, b
 LUMI_LANES Lanes subMul(Lanes c, Lanes a, Lanes b) { return _mm256_fnmadd_ps(a, b, c); }
 LUMI_LANES Lanes absolute(Lanes v) { return _mm256_andnot_ps(lanes(-0.0f), v); }
 LUMI_LANES Lanes distanceOf(Lanes a, Lanes b) { return _mm256_min_ps(absolute(a - b), lanes(1e30f)); }
-LUMI_LANES Lanes roughReciprocal(Lanes v) { return lanes(1.0f) / v; }  // processors differ in what their estimate is
+LUMI_LANES Lanes reciprocal(Lanes v) { return lanes(1.0f) / v; }
 LUMI_LANES Lanes atLeast(Lanes v, Lanes otherwise) { return _mm256_max_ps(v, otherwise); }
 LUMI_LANES Lanes atMost(Lanes v, Lanes otherwise) { return _mm256_min_ps(v, otherwise); }
-LUMI_LANES Lanes roughInverseRoot(Lanes v) { return lanes(1.0f) / _mm256_sqrt_ps(v); }
+LUMI_LANES Lanes inverseRoot(Lanes v) { return lanes(1.0f) / _mm256_sqrt_ps(v); }
 LUMI_LANES bool anyAbove(Lanes v, Lanes limit) { return _mm256_movemask_ps(_mm256_cmp_ps(v, limit, _CMP_GT_OQ)) != 0; }
 
 LUMI_LANES Lanes selectAbove(Lanes a, Lanes b, Lanes yes, Lanes no) {
@@ -95,10 +94,10 @@ LUMI_LANES Lanes mulAdd(Lanes a, Lanes b, Lanes c) { return a * b + c; }
 LUMI_LANES Lanes subMul(Lanes c, Lanes a, Lanes b) { return c - a * b; }
 LUMI_LANES Lanes absolute(Lanes v) { return _mm_andnot_ps(lanes(-0.0f), v); }
 LUMI_LANES Lanes distanceOf(Lanes a, Lanes b) { return _mm_min_ps(absolute(a - b), lanes(1e30f)); }
-LUMI_LANES Lanes roughReciprocal(Lanes v) { return lanes(1.0f) / v; }
+LUMI_LANES Lanes reciprocal(Lanes v) { return lanes(1.0f) / v; }
 LUMI_LANES Lanes atLeast(Lanes v, Lanes otherwise) { return _mm_max_ps(v, otherwise); }
 LUMI_LANES Lanes atMost(Lanes v, Lanes otherwise) { return _mm_min_ps(v, otherwise); }
-LUMI_LANES Lanes roughInverseRoot(Lanes v) { return lanes(1.0f) / _mm_sqrt_ps(v); }
+LUMI_LANES Lanes inverseRoot(Lanes v) { return lanes(1.0f) / _mm_sqrt_ps(v); }
 LUMI_LANES bool anyAbove(Lanes v, Lanes limit) { return _mm_movemask_ps(_mm_cmpgt_ps(v, limit)) != 0; }
 LUMI_LANES Lanes selectAbove(Lanes a, Lanes b, Lanes yes, Lanes no) {
     const Lanes mask = _mm_cmpgt_ps(a, b);
