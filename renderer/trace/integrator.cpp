@@ -223,7 +223,7 @@ void Integrator::shade(PathBatch& batch, uint32_t row, int depth, std::span<cons
     Surface surface = firstPoints.empty() ? evaluateSurface(scene_.tables, point, batch.geometry[row], wo, mips)
                                           : evaluateSurface(scene_.tables, point, wo, path.cone.width);
     surface.inputs.multipleScattering = settings_.multipleScattering;
-    if (settings_.regularize && path.diffuseBefore) surface.inputs.widen(settings_.leastRoughness(path.sample));
+    if (settings_.regularizes(path.diffuseBefore, depth)) surface.inputs.widen(settings_.leastRoughness(path.sample));
     if (vertex) {
         describeVertex(path, surface, wo, depth, *vertex);
         vertex->distance = distance;

@@ -71,7 +71,7 @@ void Integrator::placePlain(PathBatch& batch, int depth) const {
         plainKernels().bend(lanes);
         if (settings_.regularize)
             for (int i = 0; i < lanes.count; ++i)
-                if (path(i).diffuseBefore)
+                if (settings_.regularizes(path(i).diffuseBefore, depth))
                     lanes.roughness[i] = std::max(lanes.roughness[i], settings_.leastRoughness(path(i).sample));
     }
     if (described)

@@ -67,14 +67,20 @@ void PathSettings::describe(ParameterVisitor& v) {
          .redo = Redo::Samples});
     v.toggle("path.regularize", regularize,
              {.label = "Regularize",
-              .help = "Widens specular lobes after a diffuse scattering [Kaplanyan 2013].",
+              .help = "Widens specular lobes after a scattering [Kaplanyan 2013].",
               .redo = Redo::Samples});
     v.when(regularize, [&] {
+        v.choice("path.regularize-after", regularizeAfter,
+                 {.label = "After",
+                  .options = {"diffuse", "any"},
+                  .help = "Which scattering comes first: a diffuse one, so that reflections in reflections stay sharp, or any, as "
+                          "[Schied17, sec. 3] has it.",
+                  .redo = Redo::Samples});
         v.number("path.regularize-roughness", regularizeRoughness,
                  {.label = "Least roughness",
                   .min = 0.02,
                   .max = 1,
-                  .help = "Roughness that lobes have at least after a diffuse scattering, in the first sample.",
+                  .help = "Roughness that lobes have at least after it, in the first sample.",
                   .redo = Redo::Samples});
         v.number("path.regularize-decay", regularizeDecay,
                  {.label = "Decay",
