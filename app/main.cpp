@@ -61,7 +61,7 @@ int runCommand(const CommandLine& line) {
         }
         case Command::Bench: {
             InterruptGuard interrupt;
-            return runBenchCommand(line.filter, line.machine, log, interrupt.token());
+            return runBenchCommand(line.filter, line.check, line.machine, log, interrupt.token());
         }
         case Command::Reference: {
             InterruptGuard interrupt;

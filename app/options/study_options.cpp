@@ -35,6 +35,7 @@ public:
         : Subcommand(parent, line, "bench", "Measure speed and memory against bare Embree and memory bandwidth") {
         app_->add_option("--filter", line_.filter, "Only entries in whose name this regular expression is found")
             ->type_name("RE")->take_last();
+        app_->add_flag("--check", line_.check, "Exit with 1 where a mark (mark/...) is missed");
         addMachine(*app_, line_.machine, true);
         app_->footer(benchFooter);
     }

@@ -38,6 +38,7 @@ public:
         for (const std::string& id : benchedModules())
             add("filter/" + id, [this, id](const std::string&) { filters_.run(id, output_); });
         add("size/svgf", [this](const std::string& name) { filters_.runSizes("svgf", name, output_); });
+        add("mark/svgf", [this](const std::string& name) { filters_.runMarks("svgf", name, output_); });
         if (!hasPathtracer()) return;
         add("trace/embree-pathtracer/cornell_box", [this](const std::string& name) { pathtracer(name, ""); });
         for (const char* scene : {"atrium", "sponza"})
@@ -189,7 +190,8 @@ std::vector<BenchEntry> benchEntries() {
         {"memory/", "peak of loading and rendering; the limit is twice what scene and tracer hold"},
         {"metric/", "Mpixel/s on 1920x1080; the limit streams what it reads through memory; with its peak memory"},
         {"filter/", "frames a second at 1280x720, and of each stage; the limit streams what it reads; with its peak memory"},
-        {"size/", "Mpixel/s of the filter without antialiasing at two sizes; the limit is that at 1280x720"}};
+        {"size/", "Mpixel/s of the filter without antialiasing at two sizes; the limit is that at 1280x720"},
+        {"mark/", "the project's claims on two cores: ms at 1280x720, and times a pixel at other sizes; --check judges them"}};
     MessageLog log;
     const BenchOptions options{.filter = "", .program = "/proc/self/exe", .stop = {}};
     const Bench bench(options, log, {});

@@ -16,6 +16,8 @@ struct BenchResult {
     double medianMs = 0;   ///< of one run; 0 where no time was measured
     double spread = 0;     ///< (slowest - fastest) / median of the runs
     double limit = 0;      ///< in the same unit; 0: there is none
+    bool isMark = false;   ///< the project's own claim: the value is at most the limit
+    bool holds() const { return !isMark || value <= limit; }
     double ratioToLimit() const { return limit > 0 ? value / limit : 0; }
 };
 
@@ -45,6 +47,8 @@ std::vector<BenchEntry> benchEntries();
 ///   metric/<id>: megapixels a second on a 1920x1080 pair; the limit streams what it reads through memory once.
 ///   filter/<module>: frames a second at 1280x720 on one traced frame with full history, then filter/<module>/<stage>; the
 ///     limit streams what the module reads and its image through memory once.
+///   mark/svgf: what the project claims of it on two cores: milliseconds of a frame at 1280x720 (at most 120), and times a pixel
+///     at other sizes by that at 1280x720 (at most 1.2).
 ///   memory/metric/<id>, memory/filter/<module>: follow these; what they hold at their peak, held against the bytes of the
 ///     streams. A module's stages share its memory.
 /// Traced frames are 640x360, and times are medians of runs that alternate between what is measured and its limit.

@@ -4,6 +4,7 @@
 
 #include "math/vector.h"
 #include "study/bench.h"
+#include "study/bench_timing.h"
 
 namespace lumi {
 
@@ -31,8 +32,18 @@ public:
     /// `<name>/640x360` and `<name>/1920x1080`: Mpixel/s of the stage `filter`; the limit is the same at 1280x720 in the same run.
     void runSizes(const std::string& module, const std::string& name, const BenchOutput& output);
 
+    /// `<name>/1280x720`: milliseconds of a whole frame with antialiasing, at most 120. `<name>/640x360` and so on: times a pixel
+    /// of the stage `filter` by those at 1280x720, at most 1.2.
+    void runMarks(const std::string& module, const std::string& name, const BenchOutput& output);
+
 private:
+    struct Sized {
+        Extent2 extent;
+        RunTimes own, usual;
+    };
     ModuleBench& frame();
+    /// Times of the stage `filter` at the other sizes, in turn with the usual one; and of the usual frames as a whole.
+    std::vector<Sized> timeSizes(const std::string& module, RunTimes& whole);
 
     MessageLog& log_;
     std::stop_token stop_;

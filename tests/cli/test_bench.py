@@ -49,6 +49,15 @@ class Bench(CommandTest):
         self.assertIn("filter/svgf/wavelet filter", names)
         self.assertIn("memory/filter/svgf", names)
 
+    def test_marks_are_judged_when_asked(self):
+        result = self.run_program("bench", "--filter", "^mark/svgf$", "--check", "--json", "--quiet")
+        marks = result.json["results"]
+        self.assertEqual([mark["name"] for mark in marks], ["mark/svgf/1280x720", "mark/svgf/640x360", "mark/svgf/1920x1080"])
+        for mark in marks:
+            self.assertEqual(mark["holds"], mark["value"] <= mark["limit"])
+        self.assertEqual(marks[0]["limit"], 120)
+        self.assertEqual(result.code, 0 if all(mark["holds"] for mark in marks) else 1)
+
     def test_the_list_has_every_metric_and_filter(self):
         names = {entry["id"] for entry in self.good("list", "benches", "--json").json}
         metrics = {metric["id"] for metric in self.good("list", "metrics", "--json").json}
