@@ -16,6 +16,8 @@ namespace lumi {
 /// - No adaptive sampling.
 /// - What is filtered is demodulated direct light, visibility times irradiance, since one random point of the light tells
 ///   no irradiance free of noise.
+/// - So irradiance is noise that [Mehta12], which filters visibility alone, does not have: where the window holds no blocker
+///   nothing is blurred, and that noise stays, but for what accumulation takes.
 /// - sigma is measured from the points that the frame sampled on the light; lights of any kind are taken so, each for itself.
 /// - The blockers are found by sending the frame's shadow rays once more (trace/tracer.h, shade()).
 class AafModule : public ScreenFilter {

@@ -17,7 +17,17 @@ namespace lumi {
 /// - The second moment is kept about the mean (filter/temporal.h): the same variance with more digits.
 /// - The 3x3 fall-back's weights, which the paper does not state, are equal.
 /// - Fig. 3 feeds colour *and* moments of the first level back, sec. 4.3 colour alone: the moments stay unfiltered.
-/// - Values that are not finite are dropped and counted before anything reads them.
+/// - Values that are not finite are dropped and counted before anything reads them: with a history such a sample counts
+///   nothing, without one its neighbours' mean stands in.
+/// - Antialiasing runs on linear light that Karis's weights compress, before the tone curve, which is the view's; the paper tone
+///   maps first (sec. 3).
+/// - A bilinear tap of weight 0 is neither tested nor given the share of a refused one (kTapUnused): where nothing moves there is
+///   one tap, and where that is refused the 3x3 fall-back, or without it the history, is lost.
+/// - Path-space regularization (path.regularize) follows diffuse scatterings; the paper's follows any, which is
+///   path.regularize-after.
+///
+/// With its antialiasing on, as it is by default, still detail that stands out of its 3x3 pixels by more than taa-clip-gamma
+/// deviations is clipped with the history: that light without noise passes unchanged holds of the filter alone.
 ///
 /// What it leaves, as sec. 6 says of aliased geometry: single bright pixels on ribs, pots and leaves that turn within a few
 /// pixels. Eq. 4 refuses every neighbour there, at every level, so that a pixel has but its own history to lean on: on the
