@@ -21,6 +21,7 @@ void RenderSummary::add(const FrameOutput& frame) {
     nonFinite_ += frame.rays.nonFinite;
     for (const auto& [instance, rays] : frame.runRays) nonFinite_ += rays.nonFinite;
     moduleBytes_ = frame.moduleBytes;
+    for (const auto& [instance, pixels] : frame.droppedPixels) dropped_[instance] += pixels;
     pixels_ = std::max<int64_t>(frame.camera.extent.area(), 1);
     for (const auto& [stage, ms] : frame.stagesMs) {
         if (!stages_.count(stage)) order_.push_back(stage);
@@ -31,6 +32,8 @@ void RenderSummary::add(const FrameOutput& frame) {
 void RenderSummary::print(const std::vector<std::string>& files, const MachineOptions& machine, MessageLog& log,
                           double seconds) const {
     if (nonFinite_ > 0) log.warning(fmt::format("{} path contributions were not finite and were dropped", nonFinite_));
+    for (const auto& [instance, pixels] : dropped_)
+        if (pixels > 0) log.warning(fmt::format("{} dropped {} pixels of its input that were not finite", instance, pixels));
     const double mraysPerSecond = traceMs_ > 0 ? static_cast<double>(rays_) / traceMs_ / 1000 : 0;
     if (machine.json) {
         json stages = json::object();
@@ -38,7 +41,7 @@ void RenderSummary::print(const std::vector<std::string>& files, const MachineOp
         const json result = {{"frames", frames_}, {"frames_kept", kept_},
                              {"stages_ms", stages}, {"rays", rays_},
                              {"mrays_per_s", mraysPerSecond}, {"files", files},
-                             {"peak_memory_bytes", peakResidentBytes()}, {"module_bytes", moduleBytes_},
+                             {"peak_memory_bytes", peakResidentBytes()}, {"module_bytes", moduleBytes_}, {"dropped_pixels", dropped_},
                              {"warnings", log.warnings()}};
         std::puts(jsonText(result, 2).c_str());
     }

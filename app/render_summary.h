@@ -24,6 +24,7 @@ private:
     int64_t frames_ = 0, kept_ = 0;
     uint64_t rays_ = 0, nonFinite_ = 0;
     double traceMs_ = 0;
+    std::map<std::string, int64_t> dropped_;  ///< over all frames, by instance
     std::map<std::string, size_t> moduleBytes_;  ///< after the last frame, by instance
     int64_t pixels_ = 1;
     std::map<std::string, std::vector<double>> stages_;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "base/parallel.h"
+#include "filter/combined_albedo.h"
 #include "filter/demodulation_kernels.h"
 
 namespace lumi {
@@ -32,6 +34,44 @@ void demodulate(const Signals& signals, DemodulatedFrame& frame) {
         dropped += std::count(bad, bad + (end - begin), 1.0f);
     });
     frame.droppedPixels = dropped;
+}
+
+namespace {
+
+bool seesSurface(const DemodulatedFrame& frame, int x, int y) {
+    float least = 0;
+    for (int c = 0; c < 3; ++c)
+        least = std::max({least, frame.albedo.at(c, x, y) - kLeastAlbedo, std::abs(frame.direct.at(c, x, y)), std::abs(frame.indirect.at(c, x, y))});
+    return least > 0;
+}
+
+bool wasDropped(const Image& input, const DemodulatedFrame& frame, int x, int y) {
+    for (int c = 0; c < 3; ++c)
+        if (!std::isfinite(input.at(c, x, y) / frame.albedo.at(c, x, y))) return true;
+    return false;
+}
+
+void fillFromNeighbours(const DemodulatedFrame& frame, Image& component, int x, int y) {
+    float sum[3] = {0, 0, 0}, count = 0;
+    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, component.height() - 1); ++j)
+        for (int i = std::max(x - 1, 0); i <= std::min(x + 1, component.width() - 1); ++i) {
+            if (frame.dropped.at(0, i, j) != 0 || !seesSurface(frame, i, j)) continue;
+            for (int c = 0; c < 3; ++c) sum[c] += component.at(c, i, j);
+            ++count;
+        }
+    for (int c = 0; c < 3; ++c) component.at(c, x, y) = count > 0 ? sum[c] / count : 0;
+}
+
+}  // namespace
+
+void fillDropped(const Signals& signals, DemodulatedFrame& frame) {
+    if (frame.droppedPixels == 0) return;
+    for (int y = 0; y < frame.dropped.height(); ++y)
+        for (int x = 0; x < frame.dropped.width(); ++x) {
+            if (frame.dropped.at(0, x, y) == 0) continue;
+            if (wasDropped(signals[Signal::Direct], frame, x, y)) fillFromNeighbours(frame, frame.direct, x, y);
+            if (wasDropped(signals[Signal::Indirect], frame, x, y)) fillFromNeighbours(frame, frame.indirect, x, y);
+        }
 }
 
 void DemodulatedFrame::addComponents(Image& sum) const {

@@ -15,7 +15,7 @@ struct DemodulatedFrame {
     Image albedo;     ///< RGB in [0.01, 1]; 0.01 on the sky, which has no light to divide
     Image direct;     ///< RGB, demodulated, within 1e15 of 0
     Image indirect;   ///< RGB, demodulated, within 1e15 of 0
-    Image dropped;    ///< Y, 1 where a value of the input was not finite and stands as 0
+    Image dropped;    ///< Y, 1 where a value of the input was not finite
     int64_t droppedPixels = 0;
 
     /// direct + indirect.
@@ -31,6 +31,10 @@ inline SignalSet demodulationSignals() {
 /// Replaces NaN and infinity by 0 and counts them; what comes out is finite everywhere, and the two components are at most
 /// 1e15, whose square is a number, too.
 void demodulate(const Signals& signals, DemodulatedFrame& frame);
+
+/// Where a component of a pixel was dropped, and nothing is known of it from before, its neighbours tell best: the mean of those
+/// of 3x3 that see a surface and were not dropped, or 0 if there are none. Does nothing where nothing was dropped.
+void fillDropped(const Signals& signals, DemodulatedFrame& frame);
 
 /// out = emission + albedo * (direct + indirect); `indirect` may be null. `out` is RGB of the frame's extent.
 void remodulate(const DemodulatedFrame& frame, const Image& direct, const Image* indirect, Image& out);

@@ -168,6 +168,20 @@ ReprojectedTaps Reprojection::widen(int x, int y) const {
     return taps;
 }
 
+void VerdictImages::unused(Extent2 extent) const {
+    if (verdict) verdict->reset(extent, 1), verdict->fill(kVerdictUnused);
+    if (refusals) refusals->reset(extent, 4), refusals->fill(0);
+}
+
+std::array<float, 4> refusalMasks(const std::array<uint8_t, 4>& refusals) {
+    constexpr uint8_t reasons[4] = {kTapOtherObject, kTapDepth, kTapNormal, kTapOffScreen};
+    std::array<float, 4> masks{};
+    for (size_t r = 0; r < 4; ++r)
+        for (size_t tap = 0; tap < 4; ++tap)
+            if (refusals[tap] & reasons[r]) masks[r] += static_cast<float>(1 << tap);
+    return masks;
+}
+
 float verdictValue(const ReprojectedTaps& taps, bool sky) {
     if (sky) return 0;
     if (taps.wide) return 3;

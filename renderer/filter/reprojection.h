@@ -83,8 +83,24 @@ private:
     float normalCosine_;
 };
 
+/// Where verdicts are wanted as pictures: each may be null.
+struct VerdictImages {
+    Image* verdict = nullptr;   ///< Y, verdictValue()
+    Image* refusals = nullptr;  ///< XYZW, refusalMasks()
+    bool wanted() const { return verdict || refusals; }
+    /// Of a frame whose history nobody looked for.
+    void unused(Extent2 extent) const;
+};
+
+/// Which of the 2x2 taps were refused: for another object, depth, normal, and off screen, each a sum of 1, 2, 4 and 8 for the
+/// taps (0,0), (1,0), (0,1) and (1,1).
+std::array<float, 4> refusalMasks(const std::array<uint8_t, 4>& refusals);
+
+inline constexpr float kVerdictUnused = 20;
+
 /// Verdicts as a picture: 0 sky, 1 whole history, 2 part of the taps refused, 3 the 3x3 fall-back, 4 + the common
-/// refusals of all taps where history was lost (5 off screen, 6 other object, 8 depth, 12 normal, and sums of them).
+/// refusals of all taps where history was lost (5 off screen, 6 other object, 8 depth, 12 normal, and sums of them),
+/// kVerdictUnused where history is switched off.
 float verdictValue(const ReprojectedTaps& taps, bool sky);
 
 }  // namespace lumi

@@ -45,10 +45,8 @@ struct TemporalBlock {
 class TemporalPass {
 public:
     TemporalPass(const Signals& signals, const TemporalSettings& settings, const std::vector<const Image*>& samples,
-                 const TemporalHistory* previous, TemporalHistory& next, Image* verdict, const HistoryLoss& loss,
-                 const IntegratedLuminance& luminance)
-        : signals_(signals), settings_(settings), samples_(samples), previous_(previous), next_(next), verdict_(verdict), loss_(loss),
-          luminance_(luminance),
+                 const TemporalHistory* previous, TemporalHistory& next, const TemporalOptions& options)
+        : signals_(signals), settings_(settings), samples_(samples), previous_(previous), next_(next), options_(options),
           reprojection_(signals, previous ? previous->surface : next.surface, settings.reprojection) {}
 
     void row(int y, TemporalBlock& scratch) const {
@@ -60,7 +58,7 @@ private:
     void block(int y, int first, int last, TemporalBlock& scratch) const {
         if (!previous_) {
             integrate(y, first, last - first, {}, scratch);
-            for (int x = first; x < last && verdict_; ++x) judge(x, y, {});
+            for (int x = first; x < last && options_.verdicts.wanted(); ++x) judge(x, y, {}, {});
             return;
         }
         const ReprojectedRow& taps = scratch.taps;
@@ -71,17 +69,22 @@ private:
             forIndexRuns(0, count, [&taps](int k) { return taps.follows(k); }, [&](int from, int to, bool inARow) {
                 integrate(y, first + from, to - from, tapsOf(taps, from, inARow), scratch);
             });
-        for (int k = 0; k < count && (anyLost || verdict_); ++k) {
+        const bool judged = options_.verdicts.wanted();
+        for (int k = 0; k < count && (anyLost || judged); ++k) {
             ReprojectedTaps wide;
             if (anyLost && taps.lost(k)) wide = reprojection_.widen(first + k, y);
             if (wide.count > 0) integrate(y, first + k, 1, tapsOf(wide), scratch);
-            if (verdict_) judge(first + k, y, wide.wide ? wide : taps.pixel(k));
+            if (judged) judge(first + k, y, taps.pixel(k), wide);
         }
     }
 
-    void judge(int x, int y, const ReprojectedTaps& taps) const {
+    void judge(int x, int y, const ReprojectedTaps& taps, const ReprojectedTaps& wide) const {
         const bool sky = signals_.ids(Signal::ObjectId).at(0, x, y) == 0;
-        verdict_->at(0, x, y) = previous_ ? verdictValue(taps, sky) : sky ? 0.0f : 4.0f;
+        const auto& [verdict, refusals] = options_.verdicts;
+        if (verdict) verdict->at(0, x, y) = previous_ ? verdictValue(wide.wide ? wide : taps, sky) : sky ? 0.0f : 4.0f;
+        if (!refusals) return;
+        const std::array<float, 4> masks = sky ? std::array<float, 4>{} : refusalMasks(taps.refusals);
+        for (int r = 0; r < 4; ++r) refusals->at(r, x, y) = masks[static_cast<size_t>(r)];
     }
 
     /// Pixels [x, x + count) of row y.
@@ -91,14 +94,15 @@ private:
         kernels.lengthRow({count, taps, previous_ ? previous_->length.data() : nullptr, signals_.ids(Signal::ObjectId).data() + at,
                            settings_.colourAlpha, settings_.momentsAlpha, kLongestHistory, settings_.arithmeticWarmUp,
                            next_.length.data() + at, scratch.colourAlphas, scratch.momentsAlphas});
+        if (options_.dropped) keepHistory(at, count, scratch);
         for (size_t n = 0; n < samples_.size(); ++n) {
             IntegrationRow row = rowOf(at, n);
             row.count = count;
             row.taps = taps;
             row.colourAlphas = scratch.colourAlphas;
             row.momentsAlphas = scratch.momentsAlphas;
-            if (!loss_.empty()) {
-                const float* lambda = loss_[n]->data() + at;
+            if (!options_.loss.empty()) {
+                const float* lambda = options_.loss[n]->data() + at;
                 kernels.adaptRow(lambda, scratch.colourAlphas, scratch.adaptedColourAlphas, count);
                 kernels.adaptRow(lambda, scratch.momentsAlphas, scratch.adaptedMomentsAlphas, count);
                 row.colourAlphas = scratch.adaptedColourAlphas;
@@ -106,7 +110,7 @@ private:
             }
             kernels.integrateRow(row);
         }
-        if (!loss_.empty()) shorten(at, count);
+        if (!options_.loss.empty()) shorten(at, count);
     }
 
     /// The planes of component n from pixel `at` on.
@@ -118,7 +122,7 @@ private:
             row.sample[c] = samples_[n]->plane(c).data + at;
             row.colour[c] = to.colour.plane(c).data + at;
         }
-        if (!luminance_.empty()) row.luminance = luminance_[n]->data() + at;
+        if (!options_.luminance.empty()) row.luminance = options_.luminance[n]->data() + at;
         if (!settings_.moments) return row;
         row.previousMean = previous_ ? previous_->components[n].mean.data() : nullptr;
         row.previousVariance = previous_ ? previous_->components[n].sampleVariance.data() : nullptr;
@@ -127,11 +131,19 @@ private:
         return row;
     }
 
+    /// Samples that are no measurement count nothing where there is a history.
+    void keepHistory(int64_t at, int count, TemporalBlock& scratch) const {
+        const float* dropped = options_.dropped->data() + at;
+        float* length = next_.length.data() + at;
+        for (int k = 0; k < count; ++k)
+            if (dropped[k] != 0 && length[k] > 1) scratch.colourAlphas[k] = scratch.momentsAlphas[k] = 0, length[k] -= 1;
+    }
+
     /// What was given up is not part of the history any more.
     void shorten(int64_t at, int count) const {
         for (int64_t i = at; i < at + count; ++i) {
             float most = 0;
-            for (const Image* lambda : loss_) most = std::max(most, lambda->data()[i]);
+            for (const Image* lambda : options_.loss) most = std::max(most, lambda->data()[i]);
             float& length = next_.length.data()[i];
             length = length > 0 ? 1 + (1 - most) * (length - 1) : 0;
         }
@@ -142,9 +154,7 @@ private:
     const std::vector<const Image*>& samples_;
     const TemporalHistory* previous_;
     TemporalHistory& next_;
-    Image* verdict_;
-    const HistoryLoss& loss_;
-    const IntegratedLuminance& luminance_;
+    const TemporalOptions& options_;
     const Reprojection reprojection_;
 };
 
@@ -191,16 +201,16 @@ size_t TemporalHistory::bytes() const {
 }
 
 bool filterTemporally(const Signals& signals, const TemporalSettings& settings, const std::vector<const Image*>& samples,
-                      const TemporalHistory* previous, TemporalHistory& next, Image* verdict, std::stop_token stop,
-                      const HistoryLoss& loss, const IntegratedLuminance& luminance) {
+                      const TemporalHistory* previous, TemporalHistory& next, std::stop_token stop, const TemporalOptions& options) {
     const Extent2 extent = signals.extent();
-    assert(loss.empty() || loss.size() == samples.size());
+    assert(options.loss.empty() || options.loss.size() == samples.size());
     next.reset(extent, static_cast<int>(samples.size()), settings.moments);
     if (previous && (previous->length.extent() != extent || previous->components.size() != samples.size())) previous = nullptr;
-    if (verdict) verdict->reset(extent, 1);
-    for (Image* plane : luminance)
+    if (options.verdicts.verdict) options.verdicts.verdict->reset(extent, 1);
+    if (options.verdicts.refusals) options.verdicts.refusals->reset(extent, 4);
+    for (Image* plane : options.luminance)
         if (plane->extent() != extent) plane->reset(extent, 1);
-    const TemporalPass pass(signals, settings, samples, previous, next, verdict, loss, luminance);
+    const TemporalPass pass(signals, settings, samples, previous, next, options);
     parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
         TemporalBlock scratch;
         next.surface.copyRows(signals, static_cast<int>(begin), static_cast<int>(end));

@@ -37,18 +37,24 @@ struct TemporalHistory {
     size_t bytes() const;
 };
 
-/// What a row of the temporal filter may be given beside its settings: how much of the history to give up, 0 (none) to 1
-/// (all), one plane a component; none, or as many as components.
 using HistoryLoss = std::vector<const Image*>;
 
-/// Where the luminance of the integrated colours is wanted beside them: one plane a component, or none.
-using IntegratedLuminance = std::vector<Image*>;
+/// What the temporal filter may be given, or asked for, beside its settings; images are Y planes of the frame's extent.
+struct TemporalOptions {
+    /// How much of the history to give up, lambda from 0 (none) to 1 (all): one a component, or none. The new sample's weight is
+    /// alpha + (1 - alpha) lambda, and the history's length shrinks by the largest lambda of the components.
+    HistoryLoss loss{};
+    /// Where the luminance of the integrated colours goes: one a component, or none.
+    std::vector<Image*> luminance{};
+    /// Not 0 where the sample is no measurement, as it was not finite: with a history it counts nothing, and the history does not
+    /// grow. Null: there are none.
+    const Image* dropped = nullptr;
+    VerdictImages verdicts{};
+};
 
-/// Integrates `samples` (RGB, finite, one a component) with `previous` (null: no history) into `next`.
-/// `verdict`, if given, gets verdictValue() of each pixel. With `loss` lambda the weight of the new sample is
-/// alpha + (1 - alpha) lambda, and the history's length shrinks by the largest lambda of the components. Returns false if stopped; `next` is then undefined.
+/// Integrates `samples` (RGB, finite, one a component) with `previous` (null: no history) into `next`. Returns false if
+/// stopped; `next` is then undefined.
 bool filterTemporally(const Signals& signals, const TemporalSettings& settings, const std::vector<const Image*>& samples,
-                      const TemporalHistory* previous, TemporalHistory& next, Image* verdict, std::stop_token stop, const HistoryLoss& loss = {},
-                      const IntegratedLuminance& luminance = {});
+                      const TemporalHistory* previous, TemporalHistory& next, std::stop_token stop, const TemporalOptions& options = {});
 
 }  // namespace lumi

@@ -93,10 +93,11 @@ struct ScalarAt {
     }
 };
 
-ValueRange rangeFor(const Plan& plan, const ScalarAt& value, int64_t count, const DisplaySettings& settings) {
+ValueRange rangeFor(const Plan& plan, const ScalarAt& value, int64_t count, const DisplaySettings& settings, const std::optional<ValueRange>& own) {
     if (plan.style == Style::Tone) return {0, 1};
     if (plan.map == "ids") return {0, 1};
     if (!settings.autoRange) return {settings.low, settings.high};
+    if (own) return *own;
     const ValueRange found = percentileRange(count, value);
     if (plan.style == Style::Wheel) {
         // Where all but nothing moves, what is left is the rounding of projections.
@@ -194,7 +195,7 @@ int64_t convertRows(Extent2 extent, Image8& out, const Row& row) {
 }  // namespace
 
 DisplayInfo convert(const Image& image, const char* channels, const char* defaultMap, const DisplaySettings& settings,
-                    Image8& out) {
+                    Image8& out, const std::optional<ValueRange>& own) {
     DisplayInfo info;
     if (image.empty()) {
         out = {};
@@ -203,7 +204,7 @@ DisplayInfo convert(const Image& image, const char* channels, const char* defaul
     const Plan plan = planFor(channels, defaultMap ? defaultMap : "none", settings, image.channels());
     const ScalarAt value{plan, image.plane(plan.planes[0]).data, image.plane(plan.planes[1]).data,
                          image.plane(plan.planes[2]).data, image.channels() == 2};
-    const ValueRange range = rangeFor(plan, value, image.extent().area(), settings);
+    const ValueRange range = rangeFor(plan, value, image.extent().area(), settings, own);
     info.falseColour = plan.style != Style::Tone && plan.style != Style::Range;
     info.toneMapped = plan.style == Style::Tone;
     info.colourMap = plan.map;

@@ -1,8 +1,10 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "frame/display_range.h"
 #include "image/image.h"
 #include "params/parameter.h"
 
@@ -17,7 +19,7 @@ struct DisplaySettings {
     ToneCurve curve = ToneCurve::Aces;
     std::string colourMap =
         "auto";  ///< "auto" (the buffer's own), "none", "viridis", "turbo", "magma", "signed", "cyclic", "ids", "gray"
-    bool autoRange = true;  ///< 1st to 99th percentile of finite values
+    bool autoRange = true;  ///< the buffer's own, or the 1st to 99th percentile of finite values
     float low = 0, high = 1;
     int channel = -1;  ///< -1 all, 0.. one channel; in parameters "all", "1", ...
 
@@ -36,9 +38,9 @@ struct DisplayInfo {
 
 /// RGBA8 of a buffer. `channels` is SignalInfo::channels ("RGB", "XYZ", "Y", ...); `defaultMap` is used for "auto".
 /// RGB with map "none" is tone-mapped; XYZ shows 0.5 + 0.5 v; XY and motion show a colour wheel with maps "wheel" and "motion".
-/// Vectorised, on all threads; off the UI thread.
+/// `own`: the range that an automatic one is, where the buffer has one. Vectorised, on all threads; off the UI thread.
 DisplayInfo convert(const Image& image, const char* channels, const char* defaultMap, const DisplaySettings& settings,
-                    Image8& out);
+                    Image8& out, const std::optional<ValueRange>& own = {});
 /// Ids get well-separated colours; 0 is black.
 DisplayInfo convert(const IdImage& image, const DisplaySettings& settings, Image8& out);
 

@@ -41,7 +41,8 @@ void DisplaySettings::describe(ParameterVisitor& v) {
 
     v.toggle("auto-range", autoRange,
              {.label = "Automatic range",
-              .help = "The map spans the 1st to the 99th percentile of the finite values",
+              .help = "The map spans the buffer's own range where it has one (codes, weights, counts), else the 1st to the 99th "
+                      "percentile of the finite values",
               .redo = Redo::Display});
     v.when(!autoRange, [&] {
         v.number(

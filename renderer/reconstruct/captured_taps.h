@@ -10,6 +10,7 @@ namespace lumi {
 inline Tap droppedTap() {
     return {.name = "dropped",
             .channels = "Y",
+            .range = ValueRange{0, 1},
             .colourMap = "magma",
             .help = "1 where a value of the input was NaN or infinite and was dropped"};
 }

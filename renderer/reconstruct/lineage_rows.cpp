@@ -41,8 +41,12 @@ void forWindow(Extent2 extent, Pixel p, int step, Body body) {
 }  // namespace
 
 void addHistoryRows(Lineage& lineage, const Signals& signals, const TemporalHistory* previous, const TemporalSettings& settings,
-                    const std::string& stage, const Image* loss) {
+                    const Image* dropped, const std::string& stage, const Image* loss) {
     const Pixel p = lineage.pixel;
+    if (signals.ids(Signal::ObjectId).at(0, p.x, p.y) == 0) {
+        lineage.rows.push_back({stage, p, 1, "this frame's sample; the sky has no history"});
+        return;
+    }
     // A method that kept no history in the frame before left its record empty.
     if (!previous || previous->length.extent() != signals.extent()) {
         lineage.rows.push_back({stage, p, 1, "this frame's sample; there is no frame before"});
@@ -53,9 +57,13 @@ void addHistoryRows(Lineage& lineage, const Signals& signals, const TemporalHist
     float length = 1;
     for (size_t k = 0; k < static_cast<size_t>(taps.count); ++k) length += taps.weight[k] * previous->length.data()[taps.index[k]];
     float alpha = taps.count == 0 ? 1 : std::max(settings.colourAlpha, settings.arithmeticWarmUp ? 1 / length : 0);
+    const bool drops = dropped && taps.count > 0 && dropped->at(0, p.x, p.y) != 0;
+    if (drops) alpha = 0;
     const float lambda = loss && taps.count > 0 ? loss->at(0, p.x, p.y) : 0;
     alpha += (1 - alpha) * lambda;
-    lineage.rows.push_back({stage, p, alpha, lambda > 0 ? fmt::format("this frame's sample; lambda {:.3f}", lambda) : "this frame's sample"});
+    std::string sample = lambda > 0 ? fmt::format("this frame's sample; lambda {:.3f}", lambda) : "this frame's sample";
+    if (drops) sample += ", dropped: it is no number";
+    lineage.rows.push_back({stage, p, alpha, std::move(sample)});
     const int width = signals.extent().width;
     const auto placeOf = [&](size_t k) { return Pixel{taps.index[k] % width, taps.index[k] / width}; };
     size_t kept = 0;

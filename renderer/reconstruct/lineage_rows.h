@@ -10,9 +10,10 @@ namespace lumi {
 
 /// The stage `history`, or what it is called: this frame's sample and the taps of the frame before, those that were refused
 /// with why. `previous` may be null or empty: there is no frame before,
-/// or none whose history was kept. `loss`: lambda, how much of the history is given up.
+/// or none whose history was kept. `dropped` as TemporalOptions has it. `loss`: lambda, how much of the
+/// history is given up.
 void addHistoryRows(Lineage& lineage, const Signals& signals, const TemporalHistory* previous, const TemporalSettings& settings,
-                    const std::string& stage = "history", const Image* loss = nullptr);
+                    const Image* dropped = nullptr, const std::string& stage = "history", const Image* loss = nullptr);
 
 /// A level of SVGF's wavelet, of the component `illumination`, its input: eqs. 1 to 5.
 void addAtrousRows(Lineage& lineage, const std::string& stage, const SurfaceGuide& guide, const AtrousSettings& settings,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/timer.h"
+#include "frame/display_range.h"
 #include "frame/signals.h"
 #include "params/parameter.h"
 #include "scene/posed_scene.h"
@@ -37,7 +38,7 @@ struct Tap {
     std::string name;      ///< camelCase; files call it <module>-<name>
     const char* channels;  ///< one letter each, as SignalInfo::channels
     const char* unit = "";
-    float rangeLow = 0, rangeHigh = 1;  ///< what false colour starts with
+    std::optional<ValueRange> range{};  ///< of codes, weights and counts: false colour spans it, the same in every frame
     const char* colourMap = "viridis";  ///< "none" for colours shown as they are
     const char* help = "";
 };
@@ -107,6 +108,8 @@ public:
     virtual Convergence convergence() const { return {}; }
     /// Does history reach across these changes? Where it does not, a replay may begin here.
     virtual bool keepsHistory(const Changes& changes) const { return !changes.cut; }
+    /// Of the last completed run: pixels with values that were NaN or infinite, and were dropped.
+    virtual int64_t droppedPixels() const { return 0; }
     virtual size_t byteCount() const { return 0; }
 };
 

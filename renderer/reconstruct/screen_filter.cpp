@@ -27,6 +27,7 @@ void ScreenFilter::forget() {
     antialiasing_.forget();
     taps_.clear();
     lineage_ = {};
+    dropped_ = 0;
 }
 
 RunResult ScreenFilter::run(const FrameContext& context, Image& out) {
@@ -39,6 +40,7 @@ RunResult ScreenFilter::run(const FrameContext& context, Image& out) {
     {
         const auto measured = context.timer.measure("demodulation");
         demodulate(context.signals, frame_);
+        fillDropped(context.signals, frame_);
         taps_.keep("dropped", frame_.dropped);
     }
     if (!filter(context, history_.begin(context.frame, context.changes.cut), out)) return RunResult::Stopped;
@@ -47,6 +49,7 @@ RunResult ScreenFilter::run(const FrameContext& context, Image& out) {
     antialiasing_.commit();
     taps_.commit();
     lineage_ = pendingLineage_;
+    dropped_ = frame_.droppedPixels;
     commit();
     return RunResult::Completed;
 }
@@ -64,11 +67,28 @@ size_t ScreenFilter::byteCount() const {
 std::vector<Tap> temporalTaps() {
     return {{.name = "reprojection",
              .channels = "Y",
-             .rangeHigh = 19,
+             .range = ValueRange{0, kVerdictUnused},
              .colourMap = "turbo",
              .help = "Verdict of the history's taps: 0 sky, 1 all kept, 2 some refused, 3 found by the 3x3 fall-back, 4 and "
-                     "above lost, plus 1 off screen, 2 another object, 4 depth, 8 normal"},
-            {.name = "historyLength", .channels = "Y", .unit = "frames", .rangeHigh = 64, .help = "Frames that make up a pixel's history"}};
+                     "above lost, plus 1 off screen, 2 another object, 4 depth, 8 normal; 20 accumulation is off"},
+            {.name = "refusals",
+             .channels = "XYZW",
+             .range = ValueRange{0, 15},
+             .colourMap = "none",
+             .help = "Which of the history's four taps were refused for another object (X), depth (Y), normal (Z) and off screen "
+                     "(W): each a sum of 1, 2, 4 and 8 for the upper left, upper right, lower left and lower right one"},
+            {.name = "historyLength", .channels = "Y", .unit = "frames", .range = ValueRange{0, 64}, .help = "Frames that make up a pixel's history"}};
+}
+
+VerdictImages verdictImages(CapturedTaps& taps) { return {taps.target("reprojection"), taps.target("refusals")}; }
+
+TemporalOptions temporalOptions(const DemodulatedFrame& frame, CapturedTaps& taps) {
+    return {.dropped = frame.droppedPixels > 0 ? &frame.dropped : nullptr, .verdicts = verdictImages(taps)};
+}
+
+void keepNoHistory(CapturedTaps& taps, Extent2 extent) {
+    verdictImages(taps).unused(extent);
+    if (Image* length = taps.target("historyLength")) length->reset(extent, 1);
 }
 
 void AccumulatedInput::describe(ParameterVisitor& v) {
@@ -84,13 +104,13 @@ const Image* AccumulatedInput::integrate(const FrameContext& context, const Demo
     frame.addComponents(sum_);
     if (!enabled_) {
         next = {};  // a later frame starts its history anew
-        for (const char* tap : {"reprojection", "historyLength"})
-            if (Image* empty = taps.target(tap)) empty->reset(frame.direct.extent(), 1);
+        keepNoHistory(taps, frame.direct.extent());
         return &sum_;
     }
-    if (!filterTemporally(context.signals, settings_, {&sum_}, previous, next, taps.target("reprojection"), context.stop)) return nullptr;
+    const TemporalOptions options = temporalOptions(frame, taps);
+    if (!filterTemporally(context.signals, settings_, {&sum_}, previous, next, context.stop, options)) return nullptr;
     taps.keep("historyLength", next.length);
-    if (lineage) addHistoryRows(*lineage, context.signals, previous, settings_);
+    if (lineage) addHistoryRows(*lineage, context.signals, previous, settings_, options.dropped);
     return &next.components[0].colour;
 }
 

@@ -14,6 +14,7 @@ public:
     void resize(Extent2 extent) final;
     void forget() override;
     RunResult run(const FrameContext& context, Image& out) final;
+    int64_t droppedPixels() const final { return dropped_; }
     std::span<const Tap> taps() const final { return taps_.declared(); }
     const Image& tap(const std::string& name) const final;
     Lineage lineage() const final { return lineage_; }
@@ -52,10 +53,17 @@ private:
     AntialiasingPass antialiasing_;
     CapturedTaps taps_;
     Lineage lineage_, pendingLineage_;
+    int64_t dropped_ = 0;
 };
 
-/// The taps of filterTemporally(): `reprojection`, its verdict, and `historyLength`.
+/// The taps of filterTemporally(): `reprojection` and `refusals`, its verdicts, and `historyLength`.
 std::vector<Tap> temporalTaps();
+/// Where the verdicts go, for those who want them.
+VerdictImages verdictImages(CapturedTaps& taps);
+/// The frame's dropped pixels and the taps, for filterTemporally().
+TemporalOptions temporalOptions(const DemodulatedFrame& frame, CapturedTaps& taps);
+/// The taps of a frame whose history nobody looked for.
+void keepNoHistory(CapturedTaps& taps, Extent2 extent);
 
 /// Temporal accumulation before another filter, as [Schied17, sec. 5.1] augments the methods it compares with: direct and
 /// indirect light together, and the parameter `temporal` that switches it off.

@@ -242,6 +242,7 @@ bool FrameEngine::runModules(const FrameRequest& request, const Completed& next,
         frame.runRays[name] = difference(tracer_.counts(), before);
         frame.readsSignals[name] = current.failed || !current.module->reads().empty();  // what failed shows the noisy frame
         frame.moduleBytes[name] = current.module->byteCount();
+        frame.droppedPixels[name] = current.failed ? 0 : current.module->droppedPixels();
         advise(name, *current.module);
         if (current.firstFrame < 0) current.firstFrame = request.frame;
         current.lastFrame = request.frame;

@@ -43,6 +43,7 @@ struct FrameOutput {
     std::map<std::string, std::shared_ptr<const Image>> results;  ///< by instance
     std::map<std::string, std::shared_ptr<const Image>> taps;     ///< "<instance>-<tap>"
     std::map<std::string, size_t> moduleBytes;                    ///< by instance
+    std::map<std::string, int64_t> droppedPixels;                 ///< by instance: Module::droppedPixels()
     std::map<std::string, Convergence> convergence;               ///< by instance
     std::map<std::string, Lineage> lineages;                      ///< by instance, of the pixel asked about
     std::vector<std::pair<std::string, double>> stagesMs;

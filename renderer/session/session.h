@@ -23,6 +23,7 @@ struct PaneSnapshot {
     std::string label;            ///< "accumulate, 132 spp, equal samples"
     std::shared_ptr<const Image8> pixels;
     DisplayInfo info;
+    int64_t droppedPixels = 0;    ///< that the module dropped from its input: NaN or infinite
 };
 
 /// What the engine publishes after each frame: immutable, shared with the UI.

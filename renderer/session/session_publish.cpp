@@ -98,6 +98,7 @@ void Session::Impl::publish() {
         pane.buffer = view.buffer;
         pane.label = paneLabel(shown, view, equal);
         pane.pixels = drawView(shown, view, pane.info);
+        if (const auto dropped = shown.droppedPixels.find(view.module); dropped != shown.droppedPixels.end()) pane.droppedPixels = dropped->second;
     }
     for (const auto& [name, convergence] : shown.convergence) {
         if (convergence.samples == 0 || next->accumulatedSamples > 0) continue;

@@ -46,20 +46,20 @@ BufferView findBuffer(const FrameOutput& frame, const std::string& instance, con
     if (const Signal signal = signalByName(buffer); signal != Signal::Count) {
         if (!frame.signals || !frame.signals->available().has(signal)) return {};
         const SignalInfo& info = signalInfo(signal);
-        BufferView view{nullptr, nullptr, info.channels, defaultColourMap(signal)};
+        BufferView view{nullptr, nullptr, info.channels, defaultColourMap(signal), {}};
         if (info.isId) view.ids = &frame.signals->ids(signal);
         else view.image = &(*frame.signals)[signal];
         return view;
     }
     if (buffer == "image") {
         const auto result = frame.results.find(instance);
-        return {result == frame.results.end() ? nullptr : result->second.get(), nullptr, "RGB", "none"};
+        return {result == frame.results.end() ? nullptr : result->second.get(), nullptr, "RGB", "none", {}};
     }
     const auto tap = frame.taps.find(instance + "-" + buffer);
     if (tap == frame.taps.end()) return {};
     const auto module = findModule(instance).make();
     for (const Tap& declared : module->taps())
-        if (declared.name == buffer) return {tap->second.get(), nullptr, declared.channels, declared.colourMap};
+        if (declared.name == buffer) return {tap->second.get(), nullptr, declared.channels, declared.colourMap, declared.range};
     return {};
 }
 
@@ -68,7 +68,7 @@ std::shared_ptr<const Image8> drawView(const FrameOutput& frame, const ViewSetti
     BufferView buffer = findBuffer(frame, view.module, view.buffer);
     if (!buffer.image && !buffer.ids) buffer = findBuffer(frame, view.module, "image");
     if (buffer.ids) info = convert(*buffer.ids, view.display, *pixels);
-    else if (buffer.image) info = convert(*buffer.image, buffer.channels.c_str(), buffer.colourMap.c_str(), view.display, *pixels);
+    else if (buffer.image) info = convert(*buffer.image, buffer.channels.c_str(), buffer.colourMap.c_str(), view.display, *pixels, buffer.range);
     return pixels;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "session/document.h"
@@ -18,6 +19,7 @@ struct BufferView {
     const IdImage* ids = nullptr;
     std::string channels;
     std::string colourMap;  ///< what "auto" means for it
+    std::optional<ValueRange> range;  ///< Tap::range
 };
 BufferView findBuffer(const FrameOutput& frame, const std::string& instance, const std::string& buffer);
 

@@ -217,7 +217,9 @@ TEST_P(Catalogue, TapsAreDeclaredAndWritten) {
         EXPECT_EQ(module->tap(tap.name).extent(), extent) << tap.name;
         EXPECT_EQ(module->tap(tap.name).channels(), static_cast<int>(std::string(tap.channels).size())) << tap.name;
         EXPECT_EQ(tap.name.find_first_of("-. "), std::string::npos) << tap.name;
-        EXPECT_LT(tap.rangeLow, tap.rangeHigh) << tap.name;
+        if (tap.range) {
+            EXPECT_LT(tap.range->low, tap.range->high) << tap.name;
+        }
         EXPECT_STRNE(tap.help, "") << tap.name;
     }
     EXPECT_TRUE(module->tap("noSuchTap").empty());

@@ -1,6 +1,7 @@
 // Which taps made a pixel: the parts of every stage sum to 1 and, applied to the buffers, give the buffers that follow.
 #include <map>
 
+#include "filter/reprojection.h"
 #include "support/module_harness.h"
 
 namespace lumi::test {
@@ -107,10 +108,39 @@ TEST(LineageOf, EawGivesEachLevel) {
     }
 }
 
+// What is lost and what is not there are different things.
+TEST(LineageOf, TheSkyIsNotOffTheScreen) {
+    ModuleHarness harness(kExtent);
+    const auto module = findModule("temporal").make();
+    module->resize(kExtent);
+    harness.inspected = Pixel{3, 3};
+    for (FrameNumber frame = 0; frame < 2; ++frame) {
+        Signals signals = harness.trace(frame);
+        signals.ids(Signal::ObjectId).at(0, 3, 3) = 0;
+        harness.image(*module, frame, signals);
+    }
+    ASSERT_EQ(module->lineage().rows.size(), 1u);
+    EXPECT_NE(module->lineage().rows[0].verdict.find("sky"), std::string::npos);
+    EXPECT_EQ(module->tap("reprojection").at(0, 3, 3), 0);
+    EXPECT_EQ(module->tap("refusals").at(3, 3, 3), 0);
+}
+
+TEST(LineageOf, WithoutAccumulationTheVerdictSaysSo) {
+    ModuleHarness harness(kExtent);
+    for (const char* id : {"eaw", "sbf", "aaf"}) {
+        const auto module = findModule(id).make();
+        module->resize(kExtent);
+        setParameter([&](ParameterVisitor& v) { module->describe(v); }, "temporal", false);
+        harness.image(*module, 0, harness.trace(0));
+        const Image& verdict = module->tap("reprojection");
+        for (size_t i = 0; i < verdict.size(); ++i) ASSERT_EQ(verdict.data()[i], kVerdictUnused) << id;
+    }
+}
+
 TEST(LineageOf, NobodyAskedNobodyAnswers) {
     EXPECT_TRUE(ask("svgf", {-1, 3}).lineage.rows.empty());
     EXPECT_TRUE(ask("temporal", {64, 3}).lineage.rows.empty());
-    const Lineage lineage = ask("temporal", {63, 47}).lineage;
+    const Lineage lineage = ask("temporal", {32, 44}).lineage;
     EXPECT_GE(lineage.rows.size(), 5u);
 }
 

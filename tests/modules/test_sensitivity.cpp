@@ -141,14 +141,19 @@ void disturb(Signals& signals, Signal signal, Disturbance kind) {
         for (size_t i = 0; i < signals.noisySum().size(); ++i) signals.noisySum().data()[i] += noise(i);
 }
 
-TEST_P(Sensitivity, EverySignalThatIsReadIsUsed) {
-    // With the defaults, and with each option of each choice, since reads() may depend on them.
+/// The defaults, and each option of each choice and toggle, since reads() may depend on them.
+std::vector<std::pair<std::string, ParameterValue>> settingsThatMayChangeReads(Module& module) {
     std::vector<std::pair<std::string, ParameterValue>> settings{{"", false}};
-    const auto sample = GetParam()->make();
-    for (const ParameterInfo& info : listParameters(describeOf(*sample)))
-        if (info.type == ParameterType::Choice)
-            for (const ParameterValue& value : choicesOf(info)) settings.emplace_back(info.id, value);
-    for (const auto& [id, value] : settings) {
+    for (const ParameterInfo& info : listParameters(describeOf(module))) {
+        if (info.type != ParameterType::Choice && info.type != ParameterType::Toggle) continue;
+        for (const ParameterValue& value : choicesOf(info))
+            if (value != info.value) settings.emplace_back(info.id, value);
+    }
+    return settings;
+}
+
+TEST_P(Sensitivity, EverySignalThatIsReadIsUsed) {
+    for (const auto& [id, value] : settingsThatMayChangeReads(*GetParam()->make())) {
         const auto module = GetParam()->make();
         if (!id.empty()) setParameter(describeOf(*module), id, value);
         const std::string before = play(*module);
@@ -168,21 +173,24 @@ TEST_P(Sensitivity, EverySignalThatIsReadIsUsed) {
 }
 
 TEST_P(Sensitivity, WhatIsNotReadMayBeAbsent) {
-    const auto module = GetParam()->make();
-    const std::string full = play(*module);
-    std::vector<std::shared_ptr<Signals>> all = frames_;
-    for (auto& frame : frames_) {
-        auto reduced = std::make_shared<Signals>(*frame);
-        for (int i = 0; i < kSignalCount; ++i) {
-            const Signal signal = static_cast<Signal>(i);
-            if (module->reads().has(signal)) continue;
-            (*reduced)[signal] = {};
-            reduced->ids(signal) = {};
+    const std::vector<std::shared_ptr<Signals>> all = frames_;
+    for (const auto& [id, value] : settingsThatMayChangeReads(*GetParam()->make())) {
+        const auto module = GetParam()->make();
+        if (!id.empty()) setParameter(describeOf(*module), id, value);
+        const std::string full = play(*module);
+        for (auto& frame : frames_) {
+            auto reduced = std::make_shared<Signals>(*frame);
+            for (int i = 0; i < kSignalCount; ++i) {
+                const Signal signal = static_cast<Signal>(i);
+                if (module->reads().has(signal)) continue;
+                (*reduced)[signal] = {};
+                reduced->ids(signal) = {};
+            }
+            frame = reduced;
         }
-        frame = reduced;
+        EXPECT_EQ(play(*module), full) << id;
+        frames_ = all;
     }
-    EXPECT_EQ(play(*module), full);
-    frames_ = all;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Sensitivity, testing::ValuesIn(catalogueEntries()), testName);

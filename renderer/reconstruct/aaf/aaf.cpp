@@ -12,8 +12,8 @@ namespace {
 
 std::vector<Tap> declareTaps() {
     std::vector<Tap> taps = temporalTaps();
-    taps.push_back({.name = "occlusion", .channels = "Y", .rangeHigh = 2, .help = "Least d1/d2 - 1 of the window's blocked light samples, accumulated; 0 where none was blocked"});
-    taps.push_back({.name = "filterWidth", .channels = "Y", .unit = "m", .rangeHigh = 0.5f, .help = "beta, the Gaussian's standard deviation on the surface"});
+    taps.push_back({.name = "occlusion", .channels = "Y", .help = "Least d1/d2 - 1 of the window's blocked light samples, accumulated; 0 where none was blocked"});
+    taps.push_back({.name = "filterWidth", .channels = "Y", .unit = "m", .help = "beta, the Gaussian's standard deviation on the surface"});
     taps.push_back({.name = "integratedDirect", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "Direct illumination before the filter"});
     taps.push_back({.name = "filteredDirect", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "Direct illumination after it"});
     return taps;
@@ -62,15 +62,15 @@ bool AafModule::integrate(const FrameContext& context, const Step& step) {
     const auto measured = context.timer.measure("temporal filter");
     if (!temporal_) {
         step.next = {};  // a later frame starts its history anew
-        for (const char* tap : {"reprojection", "historyLength"})
-            if (Image* empty = captured().target(tap)) empty->reset(extent(), 1);
+        keepNoHistory(captured(), extent());
         return true;
     }
+    const TemporalOptions options = temporalOptions(frame(), captured());
     if (!filterTemporally(context.signals, temporalSettings_, {&frame().direct, &frame().indirect, &occlusion_}, step.previous,
-                          step.next, captured().target("reprojection"), context.stop))
+                          step.next, context.stop, options))
         return false;
     captured().keep("historyLength", step.next.length);
-    if (Lineage* lineage = inspected()) addHistoryRows(*lineage, context.signals, step.previous, temporalSettings_);
+    if (Lineage* lineage = inspected()) addHistoryRows(*lineage, context.signals, step.previous, temporalSettings_, options.dropped);
     return true;
 }
 

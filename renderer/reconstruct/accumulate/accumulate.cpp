@@ -29,14 +29,10 @@ AccumulateModule::AccumulateModule()
     : taps_{{.name = "sampleCount",
              .channels = "Y",
              .unit = "spp",
-             .rangeLow = 0,
-             .rangeHigh = 256,
              .help = "Samples in the mean"},
             {.name = "standardError",
              .channels = "RGB",
              .unit = "W/(m^2 sr)",
-             .rangeLow = 0,
-             .rangeHigh = 0.1f,
              .colourMap = "magma",
              .help = "Standard error of the mean, as if samples were independent (Sobol's are better than that); 0 "
                      "before the second sample"}} {}

@@ -9,11 +9,11 @@ namespace lumi {
 namespace {
 
 std::vector<Tap> gradientTaps() {
-    return {{.name = "gradientSample", .channels = "Y", .colourMap = "gray", .help = "1 in strata whose sample of the frame before was shaded again"},
-            {.name = "directGradient", .channels = "Y", .unit = "W/(m^2 sr)", .rangeLow = -1, .colourMap = "signed", .help = "Direct light of that sample now minus then, before the filter"},
-            {.name = "indirectGradient", .channels = "Y", .unit = "W/(m^2 sr)", .rangeLow = -1, .colourMap = "signed", .help = "Indirect light of that sample now minus then, before the filter"},
-            {.name = "directLoss", .channels = "Y", .colourMap = "magma", .help = "lambda: how much of the history of direct light is given up"},
-            {.name = "indirectLoss", .channels = "Y", .colourMap = "magma", .help = "lambda: how much of the history of indirect light is given up"}};
+    return {{.name = "gradientSample", .channels = "Y", .range = ValueRange{0, 1}, .colourMap = "gray", .help = "1 in strata whose sample of the frame before was shaded again"},
+            {.name = "directGradient", .channels = "Y", .unit = "W/(m^2 sr)", .colourMap = "signed", .help = "Direct light of that sample now minus then, before the filter"},
+            {.name = "indirectGradient", .channels = "Y", .unit = "W/(m^2 sr)", .colourMap = "signed", .help = "Indirect light of that sample now minus then, before the filter"},
+            {.name = "directLoss", .channels = "Y", .range = ValueRange{0, 1}, .colourMap = "magma", .help = "lambda: how much of the history of direct light is given up"},
+            {.name = "indirectLoss", .channels = "Y", .range = ValueRange{0, 1}, .colourMap = "magma", .help = "lambda: how much of the history of indirect light is given up"}};
 }
 
 /// Geometry at the middle of each stratum; slopes are per stratum.

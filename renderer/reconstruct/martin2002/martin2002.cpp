@@ -27,8 +27,8 @@ enum Code : uint8_t { kNew, kKept, kMoved };
 }  // namespace
 
 Martin2002Module::Martin2002Module()
-    : taps_({{.name = "verdicts", .channels = "Y", .rangeHigh = 2, .colourMap = "turbo", .help = "The pixel's sample: 0 new, 1 kept, 2 moved to what its ray met"},
-             {.name = "age", .channels = "Y", .unit = "frames", .rangeHigh = 64, .help = "Frames since the pixel's sample was new or moved"},
+    : taps_({{.name = "verdicts", .channels = "Y", .range = ValueRange{0, 2}, .colourMap = "turbo", .help = "The pixel's sample: 0 new, 1 kept, 2 moved to what its ray met"},
+             {.name = "age", .channels = "Y", .unit = "frames", .range = ValueRange{0, 64}, .help = "Frames since the pixel's sample was new or moved"},
              {.name = "unfiltered", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "The frame before the box filter over time"}}) {}
 
 void Martin2002Module::describe(ParameterVisitor& v) {

@@ -7,11 +7,11 @@ std::vector<Tap> declareTaps() {
     std::vector<Tap> taps = temporalTaps();
     taps.push_back({.name = "input", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "Illumination that the bank filters"});
     taps.push_back({.name = "sampleVariance", .channels = "Y", .colourMap = "magma", .help = "Variance of a pixel's colour, from its window"});
-    taps.push_back({.name = "choice", .channels = "Y", .rangeHigh = 3, .help = "The filter that is taken: 0 is sigma_s of 1 pixel, 3 is 8; between them where neighbours differ"});
+    taps.push_back({.name = "choice", .channels = "Y", .range = ValueRange{0, 3}, .help = "The filter that is taken: 0 is sigma_s of 1 pixel, 3 is 8; between them where neighbours differ"});
     for (int f = 0; f < CrossBilateralRow::kMost; ++f) {
         const std::string number = std::to_string(f), sigma = std::to_string(1 << f);
         taps.push_back({.name = "filtered" + number, .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "Illumination by a sigma_s of this filter alone"});
-        taps.push_back({.name = "error" + number, .channels = "Y", .rangeLow = -0.1f, .rangeHigh = 0.1f, .colourMap = "signed", .help = "Its estimated squared error (SURE), which noise may make negative"});
+        taps.push_back({.name = "error" + number, .channels = "Y", .colourMap = "signed", .help = "Its estimated squared error (SURE), which noise may make negative"});
     }
     return taps;
 }

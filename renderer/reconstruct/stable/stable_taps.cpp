@@ -101,17 +101,17 @@ std::vector<Tap> stableTaps() {
     return {
         {.name = "subpixels", .channels = "RGB", .colourMap = "none", .help = "The 4x4 sub-pixels of the pixels around the middle, each drawn as a pixel: visible samples blue, occluded red (fig. 6). Those of other pixels are seen in bitmasks, zoomed in"},
         {.name = "bitmasks", .channels = "RGBXY", .colourMap = "none", .help = "Visible samples as blue, occluded and just evicted ones as red, four of them as full colour; zoomed in, the window shows each pixel's 4x4 sub-pixels (fig. 6). X and Y are the occupancy and the occlusion bits"},
-        {.name = "occupancy", .channels = "Y", .rangeHigh = 65535, .help = "The 16 occupancy bits as a number; bit b is sub-pixel b, in rows from the top left"},
-        {.name = "occlusion", .channels = "Y", .rangeHigh = 65535, .help = "The 16 occlusion bits as a number; those of samples that were just evicted are set too"},
-        {.name = "sampleCount", .channels = "Y", .unit = "samples", .rangeHigh = 4, .help = "Visible samples in the pixel"},
-        {.name = "density", .channels = "Y", .unit = "samples/px", .rangeHigh = 4, .help = "Local density d after reprojection: visible samples in the 2x2 pixels around (sec. 4.2)"},
+        {.name = "occupancy", .channels = "Y", .range = ValueRange{0, 65535}, .help = "The 16 occupancy bits as a number; bit b is sub-pixel b, in rows from the top left"},
+        {.name = "occlusion", .channels = "Y", .range = ValueRange{0, 65535}, .help = "The 16 occlusion bits as a number; those of samples that were just evicted are set too"},
+        {.name = "sampleCount", .channels = "Y", .unit = "samples", .range = ValueRange{0, 4}, .help = "Visible samples in the pixel"},
+        {.name = "density", .channels = "Y", .unit = "samples/px", .range = ValueRange{0, 4}, .help = "Local density d after reprojection: visible samples in the 2x2 pixels around (sec. 4.2)"},
         {.name = "changes", .channels = "RGB", .colourMap = "none", .help = "Samples that the analysis added (green) and removed (red), as in fig. 4"},
-        {.name = "age", .channels = "Y", .unit = "frames", .rangeHigh = 64, .help = "Mean age of the pixel's visible samples"},
-        {.name = "holes", .channels = "Y", .rangeHigh = 2, .colourMap = "magma", .help = "1: no visible sample in the pixel; 2: nor in its 3x3 pixels. Where the filter has none in reach the pixel is the mean of those around it"},
-        {.name = "verdicts", .channels = "Y", .rangeHigh = 5, .colourMap = "turbo", .help = "The worst verdict on the pixel's samples: 0 none, 1 visible, 2 new, 3 occluded, 4 moved to what occludes it, 5 missed and evicted"},
-        {.name = "indirectCount", .channels = "Y", .unit = "paths", .rangeHigh = 16, .help = "Mean number of paths in the indirect light of the pixel's visible samples"},
-        {.name = "lanes", .channels = "Y", .unit = "rays", .rangeHigh = 8, .help = "Lanes of the packets of visibility rays that went to the pixel, idle ones included"},
-        {.name = "sampleMotion", .channels = "XY", .unit = "px", .rangeLow = -8, .rangeHigh = 8, .colourMap = "motion", .help = "The longest motion among the pixel's visible samples, previous minus current place"},
+        {.name = "age", .channels = "Y", .unit = "frames", .range = ValueRange{0, 64}, .help = "Mean age of the pixel's visible samples"},
+        {.name = "holes", .channels = "Y", .range = ValueRange{0, 2}, .colourMap = "magma", .help = "1: no visible sample in the pixel; 2: nor in its 3x3 pixels. Where the filter has none in reach the pixel is the mean of those around it"},
+        {.name = "verdicts", .channels = "Y", .range = ValueRange{0, 5}, .colourMap = "turbo", .help = "The worst verdict on the pixel's samples: 0 none, 1 visible, 2 new, 3 occluded, 4 moved to what occludes it, 5 missed and evicted"},
+        {.name = "indirectCount", .channels = "Y", .unit = "paths", .range = ValueRange{0, 16}, .help = "Mean number of paths in the indirect light of the pixel's visible samples"},
+        {.name = "lanes", .channels = "Y", .unit = "rays", .range = ValueRange{0, 8}, .help = "Lanes of the packets of visibility rays that went to the pixel, idle ones included"},
+        {.name = "sampleMotion", .channels = "XY", .unit = "px", .colourMap = "motion", .help = "The longest motion among the pixel's visible samples, previous minus current place"},
         {.name = "reconstructed", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "The image before temporal integration"}};
 }
 

@@ -43,7 +43,7 @@ private:
 
 SupersamplingModule::SupersamplingModule()
     : taps_({{.name = "reconstructed", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "The image before temporal integration"},
-             {.name = "sampleMotion", .channels = "XY", .unit = "px", .rangeLow = -8, .rangeHigh = 8, .colourMap = "motion", .help = "The longest motion among the pixel's samples, previous minus current place; 0 without temporal integration"}}) {}
+             {.name = "sampleMotion", .channels = "XY", .unit = "px", .colourMap = "motion", .help = "The longest motion among the pixel's samples, previous minus current place; 0 without temporal integration"}}) {}
 
 void SupersamplingModule::describe(ParameterVisitor& v) {
     v.integer("spp", samplesPerPixel_, {.label = "Samples", .min = 1, .max = kMost, .unit = "spp", .help = "Samples a pixel and frame"});

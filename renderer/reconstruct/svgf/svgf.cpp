@@ -43,18 +43,20 @@ bool SvgfModule::filter(const FrameContext& context, const Step& step, Image& ou
 }
 
 bool SvgfModule::integrate(const FrameContext& context, const Step& step) {
-    HistoryLoss loss;
+    TemporalOptions options = temporalOptions(frame(), captured());
+    options.luminance = {&input_[0].luminance, &input_[1].luminance};
+    HistoryLoss& loss = options.loss;
     if (!estimateLoss(context, loss)) return false;
     const auto measured = context.timer.measure("temporal filter");
     for (Illumination& planes : input_) planes.reset(extent());
     if (!filterTemporally(context.signals, parameters_.temporal, {&frame().direct, &frame().indirect}, step.previous, step.next,
-                          captured().target("reprojection"), context.stop, loss, {&input_[0].luminance, &input_[1].luminance}))
+                          context.stop, options))
         return false;
     keepIntegrated(captured(), step.next);
     if (Lineage* lineage = inspected()) {
-        if (loss.empty()) addHistoryRows(*lineage, context.signals, step.previous, parameters_.temporal);
+        if (loss.empty()) addHistoryRows(*lineage, context.signals, step.previous, parameters_.temporal, options.dropped);
         for (size_t c = 0; c < loss.size(); ++c)
-            addHistoryRows(*lineage, context.signals, step.previous, parameters_.temporal, c == 0 ? "direct, history" : "indirect, history", loss[c]);
+            addHistoryRows(*lineage, context.signals, step.previous, parameters_.temporal, options.dropped, c == 0 ? "direct, history" : "indirect, history", loss[c]);
     }
     // The integrated colour moves on; handOver() gives the history what it is to keep.
     for (size_t c = 0; c < kComponents; ++c) std::swap(input_[c].rgb, step.next.components[c].colour);

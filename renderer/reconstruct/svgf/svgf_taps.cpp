@@ -17,13 +17,13 @@ std::vector<Tap> svgfTaps(int maxLevels) {
         {.name = "demodulatedDirect", .channels = "RGB", .colourMap = "none", .help = "Direct illumination of this frame, divided by the albedo"},
         {.name = "demodulatedIndirect", .channels = "RGB", .colourMap = "none", .help = "Indirect illumination of this frame, divided by the albedo"},
         {.name = "demodulationAlbedo", .channels = "RGB", .colourMap = "none", .help = "What illumination is divided by: the lobes' albedos together"},
-        {.name = "depthWeight", .channels = "Y", .colourMap = "gray", .help = "w_z (eq. 3), mean of the eight neighbours at the first level"},
-        {.name = "normalWeight", .channels = "Y", .colourMap = "gray", .help = "w_n (eq. 4), mean of the eight neighbours at the first level"},
+        {.name = "depthWeight", .channels = "Y", .range = ValueRange{0, 1}, .colourMap = "gray", .help = "w_z (eq. 3), mean of the eight neighbours at the first level"},
+        {.name = "normalWeight", .channels = "Y", .range = ValueRange{0, 1}, .colourMap = "gray", .help = "w_n (eq. 4), mean of the eight neighbours at the first level"},
     };
     taps.insert(taps.end(), std::begin(fixed), std::end(fixed));
     for (const char* component : {"direct", "indirect"}) {
         const std::string name = component;
-        taps.push_back({.name = name + "LuminanceWeight", .channels = "Y", .colourMap = "gray", .help = "w_l (eq. 5), mean of the eight neighbours at the first level"});
+        taps.push_back({.name = name + "LuminanceWeight", .channels = "Y", .range = ValueRange{0, 1}, .colourMap = "gray", .help = "w_l (eq. 5), mean of the eight neighbours at the first level"});
         taps.push_back({.name = name + "FirstMoment", .channels = "Y", .unit = kRadiance, .help = "mu1', the integrated luminance (sec. 4.2)"});
         taps.push_back({.name = name + "SecondMoment", .channels = "Y", .help = "mu2', the integrated square of the luminance (sec. 4.2)"});
         for (int level = 0; level <= maxLevels; ++level) {

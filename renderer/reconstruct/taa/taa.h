@@ -16,6 +16,7 @@ public:
     RunResult run(const FrameContext&, Image& out) override;
     std::span<const Tap> taps() const override { return taps_.declared(); }
     const Image& tap(const std::string& name) const override;
+    int64_t droppedPixels() const override { return dropped_; }
     size_t byteCount() const override;
 
 private:
@@ -23,6 +24,7 @@ private:
     TaaSettings settings_;
     FrameHistory<Image> history_;
     Image scratch_;
+    int64_t dropped_ = 0;
     CapturedTaps taps_{{droppedTap()}};
 };
 

@@ -24,9 +24,10 @@ void TemporalModule::describe(ParameterVisitor& v) {
 bool TemporalModule::filter(const FrameContext& context, const Step& step, Image& out) {
     const auto measured = context.timer.measure("temporal filter");
     frame().addComponents(sum_);
-    if (!filterTemporally(context.signals, settings_, {&sum_}, step.previous, step.next, captured().target("reprojection"), context.stop))
+    const TemporalOptions options = temporalOptions(frame(), captured());
+    if (!filterTemporally(context.signals, settings_, {&sum_}, step.previous, step.next, context.stop, options))
         return false;
-    if (Lineage* lineage = inspected()) addHistoryRows(*lineage, context.signals, step.previous, settings_);
+    if (Lineage* lineage = inspected()) addHistoryRows(*lineage, context.signals, step.previous, settings_, options.dropped);
     const TemporalComponent& integrated = step.next.components[0];
     remodulate(frame(), integrated.colour, nullptr, out);
     captured().keep("illumination", integrated.colour);

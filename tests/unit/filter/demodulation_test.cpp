@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 #include "frame/stored_albedo.h"
@@ -46,6 +47,26 @@ TEST(Demodulation, GivesTheLightWhateverTheAlbedo) {
         EXPECT_GT(frame.direct.at(1, x, 0), 1.5f) << x;
         EXPECT_LT(frame.direct.at(1, x, 0), 4.01f) << x;
     }
+}
+
+/// The neighbours that see a surface and were not dropped themselves.
+TEST(Demodulation, WhatWasDroppedIsFilledFromItsNeighbours) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    Signals signals = rowOf({{0.5f, 0}, {0.25f, 0}, {1, 0}, {0, 0}, {0.5f, 0}, {0.5f, 0}}, 2);
+    signals[Signal::Direct].at(0, 1, 0) = nan;       // between 2 and 2
+    signals[Signal::Direct].at(2, 0, 0) *= 3;        // of one neighbour the blue is 6
+    signals[Signal::Indirect].at(1, 4, 0) = kInfinity;  // between the sky and 1
+    signals[Signal::Emission].at(1, 5, 0) = nan;     // its light is a measurement
+    DemodulatedFrame frame;
+    demodulate(signals, frame);
+    EXPECT_EQ(frame.droppedPixels, 3);
+    fillDropped(signals, frame);
+    EXPECT_FLOAT_EQ(frame.direct.at(0, 1, 0), 2);
+    EXPECT_FLOAT_EQ(frame.direct.at(2, 1, 0), 4);
+    EXPECT_FLOAT_EQ(frame.indirect.at(1, 1, 0), 1) << "this part was a number";
+    EXPECT_FLOAT_EQ(frame.indirect.at(1, 4, 0), 0) << "one neighbour is sky, the other was dropped too";
+    EXPECT_FLOAT_EQ(frame.direct.at(0, 5, 0), 2);
+    EXPECT_EQ(frame.dropped.at(0, 1, 0), 1) << "it stays counted";
 }
 
 TEST(Demodulation, MultipliesToWhatItDivided) {

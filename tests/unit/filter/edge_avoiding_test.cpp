@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/isa.h"
 #include "filter/edge_avoiding.h"
 #include "support/random_planes.h"
 
@@ -27,7 +28,7 @@ TEST(EdgeAvoiding, ALevelIsItsDefinition) {
         }
     const EdgeAvoidingSettings settings{.sigmaColour = 2, .sigmaNormal = 0.5f, .sigmaPosition = 0.15f};
     const double h[5] = {1.0 / 16, 1.0 / 4, 3.0 / 8, 1.0 / 4, 1.0 / 16};
-    for (const int level : {0, 2}) {
+    const auto compare = [&](int level) {
         ASSERT_TRUE(edgeAvoidingLevel(signals, settings, level, in, out, {}));
         const int step = 1 << level;
         for (int y = 0; y < extent.height; ++y)
@@ -49,9 +50,15 @@ TEST(EdgeAvoiding, ALevelIsItsDefinition) {
                         weights += w;
                         for (int c = 0; c < 3; ++c) sums[c] += w * in.at(c, qx, qy);
                     }
-                for (int c = 0; c < 3; ++c) ASSERT_NEAR(out.at(c, x, y), sums[c] / weights, 2e-5) << x << ' ' << y;
+                for (int c = 0; c < 3; ++c) ASSERT_NEAR(out.at(c, x, y), sums[c] / weights, 2e-5) << isaName(activeIsa()) << ' ' << x << ' ' << y;
             }
+    };
+    for (const Isa isa : {Isa::Baseline, Isa::V3, Isa::V4}) {
+        if (isa > detectIsa()) continue;
+        setIsa(isa);
+        for (const int level : {0, 2}) compare(level);
     }
+    setIsa(detectIsa());
 }
 
 }  // namespace

@@ -59,10 +59,10 @@ Results run(const Signals& first, const Signals& second) {
     TemporalHistory before;
     Image scratch, early, next, unused;
     demodulate(first, results.frame);
-    EXPECT_TRUE(filterTemporally(first, {}, {&results.frame.direct, &results.frame.indirect}, nullptr, before, nullptr, {}));
+    EXPECT_TRUE(filterTemporally(first, {}, {&results.frame.direct, &results.frame.indirect}, nullptr, before, {}));
     EXPECT_TRUE(antialiasTemporally(first, {}, results.frame.direct, nullptr, scratch, early, unused, {}));
     demodulate(second, results.frame);
-    EXPECT_TRUE(filterTemporally(second, {}, {&results.frame.direct, &results.frame.indirect}, &before, results.history, nullptr, {}));
+    EXPECT_TRUE(filterTemporally(second, {}, {&results.frame.direct, &results.frame.indirect}, &before, results.history, {}));
     EXPECT_TRUE(antialiasTemporally(second, {}, results.frame.direct, &early, scratch, next, results.antialiased, {}));
     return results;
 }
@@ -96,9 +96,9 @@ TEST(FilterRows, IntegrateWhatSinglePixelsTapsSay) {
     TemporalHistory before, after;
     const TemporalSettings settings;
     demodulate(first, frame);
-    ASSERT_TRUE(filterTemporally(first, settings, {&frame.direct}, nullptr, before, nullptr, {}));
+    ASSERT_TRUE(filterTemporally(first, settings, {&frame.direct}, nullptr, before, {}));
     demodulate(second, frame);
-    ASSERT_TRUE(filterTemporally(second, settings, {&frame.direct}, &before, after, nullptr, {}));
+    ASSERT_TRUE(filterTemporally(second, settings, {&frame.direct}, &before, after, {}));
     const Reprojection reprojection(second, before.surface, settings.reprojection);
     int kept = 0, wide = 0, lost = 0;
     for (int y = 0; y < kExtent.height; ++y)
@@ -133,10 +133,10 @@ TEST(FilterRows, HistoryCanBeGivenUp) {
     for (int64_t i = 0; i < kExtent.area(); ++i) loss.data()[i] = static_cast<float>(i % 3) * 0.5f;
     TemporalSettings settings;
     settings.colourAlpha = 0.1f;
-    ASSERT_TRUE(filterTemporally(still, settings, {&old}, nullptr, before, nullptr, {}));
+    ASSERT_TRUE(filterTemporally(still, settings, {&old}, nullptr, before, {}));
     Image now(kExtent, 3);
     now.fill(3);
-    ASSERT_TRUE(filterTemporally(still, settings, {&now}, &before, after, nullptr, {}, {&loss}));
+    ASSERT_TRUE(filterTemporally(still, settings, {&now}, &before, after, {}, {.loss = {&loss}}));
     for (int x = 0; x < kExtent.width; ++x) {
         const float lambda = loss.at(0, x, 12), alpha = 0.1f + 0.9f * lambda;
         ASSERT_NEAR(after.components[0].colour.at(1, x, 12), 1 + 2 * alpha, 1e-5);

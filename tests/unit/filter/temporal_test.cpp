@@ -85,6 +85,15 @@ TEST(Reprojection, EachTestRefuses) {
     EXPECT_EQ(verdictValue(outside, false), 4.0f + float(kTapOffScreen));
 }
 
+TEST(Reprojection, MasksTellWhichTapsWereRefusedAndWhy) {
+    const Signals signals = wall({0.25f, 0.25f});
+    Signals before = wall();
+    before.ids(Signal::ObjectId).at(0, 11, 6) = 7;
+    before[Signal::InverseDepth].at(0, 10, 5) = before[Signal::InverseDepth].at(0, 11, 6) = 0.6f;
+    EXPECT_EQ(refusalMasks(tapsAt(signals, before, 10, 5).refusals), (std::array<float, 4>{8, 1 + 8, 0, 0}));
+    EXPECT_EQ(refusalMasks(tapsAt(wall({-0.5f, 0}), wall(), 0, 5).refusals), (std::array<float, 4>{0, 0, 0, 1})) << "those below have no weight";
+}
+
 TEST(Reprojection, TheWideFallbackFindsThinGeometry) {
     const Signals signals = wall();
     Signals before = wall();
@@ -120,7 +129,7 @@ TEST(TemporalFilter, IntegratesColourAndMoments) {
         Image sample(kExtent, 3);
         sample.fill(value);
         auto [previous, next] = history.begin(frame, frame == 0);
-        ASSERT_TRUE(filterTemporally(signals, settings, {&sample}, previous, next, nullptr, {}));
+        ASSERT_TRUE(filterTemporally(signals, settings, {&sample}, previous, next, {}));
         history.commit();
         colour = frame == 0 ? value : colour + 0.25 * (value - colour);
         first = frame == 0 ? value : 0.5 * value + 0.5 * first;
@@ -133,6 +142,31 @@ TEST(TemporalFilter, IntegratesColourAndMoments) {
     }
 }
 
+/// What is no measurement counts nothing, and is not counted; without a history it is all there is.
+TEST(TemporalFilter, ADroppedSampleLeavesTheHistoryAsItIs) {
+    const Signals signals = wall();
+    FrameHistory<TemporalHistory> history;
+    Image sample(kExtent, 3), dropped(kExtent, 1);
+    dropped.at(0, 7, 7) = 1;
+    for (int frame = 0; frame < 3; ++frame) {
+        sample.fill(static_cast<float>(frame + 1));
+        auto [previous, next] = history.begin(frame, frame == 0);
+        ASSERT_TRUE(filterTemporally(signals, {}, {&sample}, previous, next, {}, {.dropped = frame == 1 ? nullptr : &dropped}));
+        history.commit();
+        const TemporalHistory& now = history.current();
+        const float colour = now.components[0].colour.at(0, 7, 7), beside = now.components[0].colour.at(0, 8, 7);
+        if (frame < 2) {
+            EXPECT_EQ(colour, beside);
+            continue;
+        }
+        EXPECT_FLOAT_EQ(colour, 1.2f);
+        EXPECT_FLOAT_EQ(beside, 1.2f + 0.2f * 1.8f);
+        EXPECT_FLOAT_EQ(now.components[0].mean.at(0, 7, 7), 1.2f);
+        EXPECT_EQ(now.length.at(0, 7, 7), 2);
+        EXPECT_EQ(now.length.at(0, 8, 7), 3);
+    }
+}
+
 TEST(TemporalFilter, WarmUpIsTheArithmeticMean) {
     const TemporalSettings settings{.colourAlpha = 0.01f, .momentsAlpha = 0.01f, .arithmeticWarmUp = true, .reprojection = {}};
     const Signals signals = wall();
@@ -142,7 +176,7 @@ TEST(TemporalFilter, WarmUpIsTheArithmeticMean) {
         Image sample(kExtent, 3);
         sample.fill(static_cast<float>(frame * frame));
         auto [previous, next] = history.begin(frame, frame == 0);
-        ASSERT_TRUE(filterTemporally(signals, settings, {&sample}, previous, next, nullptr, {}));
+        ASSERT_TRUE(filterTemporally(signals, settings, {&sample}, previous, next, {}));
         history.commit();
         sum += frame * frame;
         EXPECT_NEAR(history.current().components[0].colour.at(0, 3, 3), sum / (frame + 1), 1e-4);

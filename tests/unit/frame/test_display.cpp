@@ -150,6 +150,23 @@ TEST(Display, NanIsMagentaAndInfinityCyan) {
     EXPECT_EQ(pixel(out, 1, 0), kMagenta);
 }
 
+/// A code keeps its colour whatever else is in the picture.
+TEST(Display, ABuffersOwnRangeIsTheAutomaticOne) {
+    Image few({2, 1}, 1), many({2, 1}, 1);
+    few.at(0, 0, 0) = many.at(0, 0, 0) = 2;
+    few.at(0, 1, 0) = 3;
+    many.at(0, 1, 0) = 19;
+    Image8 a, b;
+    const DisplayInfo info = convert(few, "Y", "turbo", {}, a, ValueRange{0, 20});
+    convert(many, "Y", "turbo", {}, b, ValueRange{0, 20});
+    EXPECT_EQ(info.high, 20);
+    EXPECT_EQ(pixel(a, 0, 0), pixel(b, 0, 0));
+    convert(few, "Y", "turbo", {}, a);
+    convert(many, "Y", "turbo", {}, b);
+    EXPECT_EQ(pixel(a, 0, 0), pixel(b, 0, 0)) << "both are the least";
+    EXPECT_EQ(convert(few, "Y", "turbo", manual(0, 4), a, ValueRange{0, 20}).high, 4) << "the user's own";
+}
+
 TEST(Display, TheSkysDepthIsBlackAndNotCounted) {
     Image depth({5, 1}, 1);
     for (int x = 0; x < 3; ++x) depth.at(0, x, 0) = static_cast<float>(x + 1);
