@@ -25,16 +25,11 @@ Mat3 normalMatrix(const Mat4& m) {
 
 bool isMirroring(const Mat4& m) { return glm::dot(Vec3(m[0]), glm::cross(Vec3(m[1]), Vec3(m[2]))) < 0; }
 
-namespace {
-
-/// `v` made unit, however long or short it is; `otherwise` if it has no direction.
 Vec3 unitOr(const Vec3& v, const Vec3& otherwise) {
     const float length = glm::length(v), largest = maxComponent(glm::abs(v));
     if (length > 1e-18f && length < 1e18f) return v / length;  // its square is a plain float
     return largest > 0 && isFinite(v) ? glm::normalize(v / largest) : otherwise;
 }
-
-}  // namespace
 
 Mat4 lookAt(const Vec3& eye, const Vec3& target, const Vec3& up) {
     const Vec3 back = unitOr(eye - target, Vec3(0, 0, 1));

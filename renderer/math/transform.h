@@ -16,6 +16,9 @@ struct Transform {
 /// Interpolates translation and scale linearly, rotation on the shorter great arc.
 Transform interpolate(const Transform& a, const Transform& b, float t);
 
+/// `v` made unit, however long or short it is; `otherwise` if it has no direction: it is zero or not finite.
+Vec3 unitOr(const Vec3& v, const Vec3& otherwise);
+
 inline Vec3 transformPoint(const Mat4& m, const Vec3& p) { return Vec3(m * Vec4(p, 1)); }
 inline Vec3 transformVector(const Mat4& m, const Vec3& v) { return Vec3(m * Vec4(v, 0)); }
 

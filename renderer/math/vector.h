@@ -18,6 +18,9 @@ constexpr float kInvPi = 0.31830988618379067154f;
 constexpr float kInfinity = __builtin_huge_valf();
 
 inline float sqr(float x) { return x * x; }
+/// Clamped to [0, 1]; NaN becomes 0.
+inline float saturate(float x) { return x > 0 ? (x < 1 ? x : 1.0f) : 0.0f; }
+inline Vec3 saturate(const Vec3& v) { return {saturate(v.x), saturate(v.y), saturate(v.z)}; }
 inline float maxComponent(const Vec3& v) { return glm::max(v.x, glm::max(v.y, v.z)); }
 inline float minComponent(const Vec3& v) { return glm::min(v.x, glm::min(v.y, v.z)); }
 inline float average(const Vec3& v) { return (v.x + v.y + v.z) * (1.0f / 3.0f); }

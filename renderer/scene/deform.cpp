@@ -9,11 +9,6 @@ namespace {
 
 constexpr int64_t kGrain = 4096;  ///< vertices a task
 
-Vec3 unitOr(const Vec3& v, const Vec3& otherwise) {
-    const float length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : otherwise;
-}
-
 void addScaled(std::vector<Vec3>& to, const std::vector<Vec3>& delta, float weight, size_t begin, size_t end) {
     if (delta.empty() || to.empty()) return;
     for (size_t i = begin; i < end; ++i) to[i] += weight * delta[i];

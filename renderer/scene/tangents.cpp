@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "math/transform.h"
 #include "scene/mesh.h"
 #include "scene/mesh_edit.h"
 
@@ -38,13 +39,8 @@ struct Group {
     uint32_t first = 0, last = 0;
 };
 
-Vec3 unitOrZero(const Vec3& v) {
-    const float length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : Vec3(0);
-}
-
 Vec3 projected(const Vec3& v, const Vec3& normal) {
-    return unitOrZero(v - normal * glm::dot(normal, v));
+    return unitOr(v - normal * glm::dot(normal, v), Vec3(0));
 }
 
 Vec3 anyPerpendicular(const Vec3& n) {
@@ -103,8 +99,8 @@ private:
         if (!(std::abs(area) > 0) || !std::isfinite(area)) return;
         face.preserves = area > 0;
         const float sign = face.preserves ? 1.0f : -1.0f;
-        face.along = unitOrZero(sign * (e1 * d2.y - e2 * d1.y));
-        face.across = unitOrZero(sign * (e2 * d1.x - e1 * d2.x));
+        face.along = unitOr(sign * (e1 * d2.y - e2 * d1.y), Vec3(0));
+        face.across = unitOr(sign * (e2 * d1.x - e1 * d2.x), Vec3(0));
         face.isUndirected = face.along == Vec3(0) || face.across == Vec3(0);
     }
 
@@ -189,7 +185,7 @@ private:
             const Vec3 last = projected(mesh_.positions[member.vertex[(corner + 2) % 3]] - p, normal);
             sum += std::acos(std::clamp(glm::dot(next, last), -1.0f, 1.0f)) * projected(member.along, normal);
         }
-        return unitOrZero(sum);
+        return unitOr(sum, Vec3(0));
     }
 
     static bool goTogether(const Face& a, const Face& b, const Vec3& normal) {

@@ -67,10 +67,6 @@ struct LobeValue {
 /// wo is kept at least this far above the horizon.
 constexpr float kMinCosine = 1e-4f;
 
-/// To [0, 1]; not a number becomes 0.
-inline float saturate(float x) { return x > 0 ? std::min(x, 1.0f) : 0.0f; }
-inline Vec3 saturate(const Vec3& c) { return {saturate(c.x), saturate(c.y), saturate(c.z)}; }
-
 /// Unit half vector on the side z > 0; z = 0 if there is none.
 inline Vec3 halfVector(const Vec3& sum) {
     const float length2 = glm::dot(sum, sum);

@@ -16,9 +16,6 @@ constexpr int kMostColumns = 1024, kLeastColumns = 64;
 /// How much the second moment of a light sample may grow by a coarser grid.
 constexpr double kMostGrowth = 1.2;
 
-/// `x` within [0, 1]; 0 for NaN: a direction that is no number looks up a texel too.
-float unit(float x) { return x > 0 ? (x < 1 ? x : 1.0f) : 0.0f; }
-
 /// Index i of the interval of an ascending table (count + 1 entries from 0 to 1) that holds u, never an empty one.
 /// guide[k] is the interval that holds k / count.
 int findInterval(const float* cdf, const uint16_t* guide, int count, float u) {
@@ -214,7 +211,8 @@ Vec3 EnvironmentLight::radiance(const Vec3& direction) const {
 }
 
 Vec3 EnvironmentLight::imageRadiance(Vec2 uv) const {
-    const float fx = unit(uv.x) * static_cast<float>(width_) + 0.5f, fy = unit(uv.y) * static_cast<float>(height_) + 0.5f;
+    // A direction that is no number looks up a texel too.
+    const float fx = saturate(uv.x) * static_cast<float>(width_) + 0.5f, fy = saturate(uv.y) * static_cast<float>(height_) + 0.5f;
     // Texel centres are at halves: the pair around the point is (cell - 1, cell).
     const int cellX = static_cast<int>(fx), cellY = static_cast<int>(fy);
     const float tx = fx - static_cast<float>(cellX), ty = fy - static_cast<float>(cellY);
@@ -266,8 +264,8 @@ float EnvironmentLight::pdf(const Vec3& direction) const {
     const Vec2 uv = latLongFromDirection(d);
     const float sine = std::sqrt(std::max(0.0f, 1 - d.y * d.y));
     if (!(sine > 0)) return 0;
-    const int column = std::min(static_cast<int>(unit(uv.x) * static_cast<float>(columns_)), columns_ - 1);
-    const int row = std::min(static_cast<int>(unit(uv.y) * static_cast<float>(rows_)), rows_ - 1);
+    const int column = std::min(static_cast<int>(saturate(uv.x) * static_cast<float>(columns_)), columns_ - 1);
+    const int row = std::min(static_cast<int>(saturate(uv.y) * static_cast<float>(rows_)), rows_ - 1);
     return density(column, row) / (2 * kPi * kPi * sine);
 }
 

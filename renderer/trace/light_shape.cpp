@@ -27,11 +27,6 @@ Vec3 directionFromOctahedron(Vec2 uv) {
     return glm::normalize(d);
 }
 
-Vec3 unitOr(const Vec3& v, const Vec3& fallback) {
-    const float length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : fallback;
-}
-
 /// Directions of the light's axes: a frame for naming points of spheres.
 Frame frameOf(const LightShape& shape) {
     const Frame around(shape.normal);

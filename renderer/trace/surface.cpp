@@ -6,6 +6,7 @@
 
 #include "trace/coverage.h"
 #include "trace/moving_triangle.h"
+#include "trace/quick_unit.h"
 #include "trace/surface_material.h"
 
 namespace lumi {
@@ -13,11 +14,6 @@ namespace {
 
 /// Half-precision of the reflection's height above the surface that a bent normal keeps.
 constexpr float kLeastCosine = 1e-3f;
-
-Vec3 unitOr(const Vec3& v, const Vec3& fallback) {
-    const float length2 = glm::dot(v, v);
-    return length2 > 0 && std::isfinite(length2) ? v * (1 / std::sqrt(length2)) : fallback;
-}
 
 template <class T>
 T interpolate(const T* values, const UVec3& t, Vec2 b) {
@@ -31,7 +27,7 @@ Vec3 consistentNormal(const Vec3& shading, const Vec3& geometric, const Vec3& wo
     const float height = glm::dot(mirrored, geometric);
     if (height >= kLeastCosine && glm::dot(wo, shading) > 0) return shading;
     const Vec3 lifted = mirrored + geometric * (kLeastCosine - height);
-    return unitOr(wo + unitOr(lifted, geometric), geometric);
+    return quickUnitOr(wo + quickUnitOr(lifted, geometric), geometric);
 }
 
 /// The triangle's tangent frame for its normal map: mesh tangents, or the directions of growing u and of falling v
@@ -63,7 +59,7 @@ TangentFrame tangentFrame(const InstanceRecord& r, uint32_t primitive, const UVe
 
 /// A direction of the tangent plane in the plane of `local`; its x without a tangent frame.
 Vec2 alongSurface(const Frame& local, const TangentFrame& frame, Vec2 direction) {
-    const Vec3 world = unitOr(frame.tangent, Vec3(0)) * direction.x + unitOr(frame.bitangent, Vec3(0)) * direction.y;
+    const Vec3 world = quickUnitOr(frame.tangent, Vec3(0)) * direction.x + quickUnitOr(frame.bitangent, Vec3(0)) * direction.y;
     const Vec2 along(local.toLocal(world));
     return glm::length(along) > 1e-6f ? along : Vec2(1, 0);
 }
@@ -145,7 +141,7 @@ SurfaceGeometry geometryOf(const SceneTables& tables, const InstanceRecord& r, c
         g.twiceArea = glm::length(glm::cross(g.edge1, g.edge2));
         g.offset = r.objectScale * 0x1p-18f;
     }
-    g.outwardNormal = unitOr(outward, wo);
+    g.outwardNormal = quickUnitOr(outward, wo);
     const float cosine = glm::dot(g.outwardNormal, wo);
     g.frontFace = cosine >= 0;
     g.footprint = width / std::sqrt(std::max(std::abs(cosine), 0.04f));
@@ -173,7 +169,7 @@ Surface surfaceOf(const SceneTables& tables, const InstanceRecord& r, const UVec
     Vec3 smooth = s.outwardNormal;
     if (r.normals) {
         objectNormal = interpolate(r.normals, t, b);
-        smooth = unitOr(r.normalFromObject * objectNormal, s.outwardNormal);
+        smooth = quickUnitOr(r.normalFromObject * objectNormal, s.outwardNormal);
     }
 
     // Material, textures filtered over the footprint.
@@ -250,7 +246,7 @@ Vec3 restNormal(const SceneTables& tables, const SurfacePoint& point, bool front
         const Vec3* p = r.restPositions;
         rest = glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x]);
     }
-    return unitOr(frontFace ? rest : -rest, Vec3(0, 1, 0));
+    return quickUnitOr(frontFace ? rest : -rest, Vec3(0, 1, 0));
 }
 
 Vec3 triangleEmission(const SceneTables& tables, uint32_t instance, uint32_t primitive, Vec2 barycentrics) {

@@ -2,15 +2,11 @@
 #include <cmath>
 
 #include "trace/moving_triangle.h"
+#include "trace/quick_unit.h"
 #include "trace/surface.h"
 
 namespace lumi {
 namespace {
-
-Vec3 unitOr(const Vec3& v, const Vec3& fallback) {
-    const float length2 = glm::dot(v, v);
-    return length2 > 0 && std::isfinite(length2) ? v * (1 / std::sqrt(length2)) : fallback;
-}
 
 /// Place among the vertices `t`, in their space.
 Vec3 placeAmong(const Vec3* positions, const UVec3& t, Vec2 b) {
@@ -23,8 +19,8 @@ Vec3 smoothNormal(const InstanceRecord& r, const UVec3& t, Vec2 barycentrics) {
     Vec3 outward = glm::cross(edge1, edge2);
     if (!r.inWorld) outward = r.normalFromObject * outward;
     else if (r.mirrored) outward = -outward;
-    outward = unitOr(outward, Vec3(0, 1, 0));
-    return r.normals ? unitOr(r.normalFromObject * placeAmong(r.normals, t, barycentrics), outward) : outward;
+    outward = quickUnitOr(outward, Vec3(0, 1, 0));
+    return r.normals ? quickUnitOr(r.normalFromObject * placeAmong(r.normals, t, barycentrics), outward) : outward;
 }
 
 }  // namespace

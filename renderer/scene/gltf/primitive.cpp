@@ -107,11 +107,6 @@ void warnOfLeftOut(const Document& document, const std::vector<std::map<std::str
                 document.warn("morph targets of " + name.substr(0, name.find('_')) + " are left out");
 }
 
-Vec3 unitOr(const Vec3& v, const Vec3& otherwise) {
-    const float length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : otherwise;
-}
-
 /// Replaces what is not finite in attributes that only decorate.
 void makeHarmless(Mesh& mesh) {
     for (Vec3& n : mesh.normals) n = unitOr(n, Vec3(0, 1, 0));

@@ -25,11 +25,6 @@ std::vector<uint32_t> weld(const std::vector<Vec3>& positions) {
     return group;
 }
 
-Vec3 unitOr(const Vec3& v, const Vec3& fallback) {
-    const float length = glm::length(v);
-    return length > 1e-20f ? v / length : fallback;
-}
-
 /// Angle at corner a of triangle abc.
 float cornerAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 u = b - a, v = c - a;
