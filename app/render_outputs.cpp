@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <optional>
 #include <thread>
 
 #include "app/render_command.h"
@@ -21,8 +22,9 @@ bool isNumber(const std::string& text) {
     return !text.empty() && text.size() <= 9 && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// Is `text` the number of a process that has ended?
-bool hasEnded(const std::string& text) { return isNumber(text) && kill(std::stoi(text), 0) != 0 && errno == ESRCH; }
+/// Is there no such process any more?
+bool hasEnded(int process) { return kill(process, 0) != 0 && errno == ESRCH; }
+bool hasEnded(const std::string& process) { return isNumber(process) && hasEnded(std::stoi(process)); }
 
 template <class IsLeftover>
 void removeIf(const fs::path& folder, IsLeftover isLeftover) {
@@ -47,20 +49,16 @@ fs::path checkName(const fs::path& name) {
     return fs::path(name).replace_extension(fmt::format(".{}.check{}", getpid(), name.extension().string()));
 }
 
-/// Removes what a killed process was about to write in a video's own folder: <digits>.png.<process>.<serial>.tmp (see
-/// writeFileAtomically) and checkName().
+/// Removes what killed processes left in a video's own folder: frames half written, and images they were compared with.
 void removeFrameLeftovers(const fs::path& folder) {
     removeIf(folder, [](const std::string& name) {
-        std::vector<std::string> parts{""};
-        for (const char c : name)
-            if (c == '.') parts.emplace_back();
-            else parts.back() += c;
-        if (!isNumber(parts[0])) return false;
-        if (parts.size() > 3 && parts.back() == "tmp" && isNumber(parts[parts.size() - 2])) {
-            const bool frame = parts.size() == 5 && parts[1] == "png", check = parts.size() == 7 && parts[2] == "check";
-            return (frame || check) && hasEnded(parts[parts.size() - 3]);
-        }
-        return parts.size() == 4 && parts[2] == "check" && parts[3] == "png" && hasEnded(parts[1]);
+        const std::optional<Unfinished> part = unfinishedFile(name);
+        if (part && !hasEnded(part->process)) return false;
+        const fs::path image = part ? part->whole : fs::path(name), stem = image.stem();
+        if (image.extension() != ".png") return false;
+        if (stem.extension() != ".check") return part && isNumber(stem.string());
+        const fs::path checked = stem.stem();  // <frame>.<process>, see checkName()
+        return isNumber(checked.stem().string()) && checked.has_extension() && hasEnded(checked.extension().string().substr(1));
     });
 }
 

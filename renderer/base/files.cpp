@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -51,7 +52,7 @@ void createFolderOf(const fs::path& path) {
     if (failure) throwWriteError(path, failure.value(), "cannot be written: its folder cannot be created");
 }
 
-/// `<file>.<process>.<serial>.tmp`, a name for each call; of the file's own only so much as file systems take.
+/// `<file>.<process>.<serial>.tmp`, which unfinishedFile() knows, a name for each call; of the file's own only so much as file systems take.
 fs::path temporaryBeside(const fs::path& path) {
     constexpr size_t kLongestName = 255;
     static std::atomic<uint32_t> serial{0};  // two threads may write one path
@@ -100,6 +101,15 @@ int renameToNew(const fs::path& from, const fs::path& to) {
     return ::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
 }
 
+/// 12 of ".12"; nothing if it is something else or too large.
+std::optional<int> dottedNumber(const fs::path& extension) {
+    const std::string& text = extension.native();
+    int number = 0;
+    if (text.size() < 2 || text[0] != '.' || text[1] == '-') return std::nullopt;
+    const auto [end, code] = std::from_chars(text.data() + 1, text.data() + text.size(), number);
+    return code == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
 }  // namespace
 
 std::vector<uint8_t> readFile(const fs::path& path, uint64_t limitBytes) {
@@ -141,6 +151,15 @@ void requireWritable(const fs::path& path) {
     if (file < 0) throwWriteError(path, errno);
     ::close(file);
     ::unlink(temporary.c_str());
+}
+
+std::optional<Unfinished> unfinishedFile(const fs::path& path) {
+    if (path.extension() != ".tmp") return std::nullopt;
+    // <whole>.<process>.<serial>.tmp
+    const fs::path serialLast = path.stem(), processLast = serialLast.stem();
+    const std::optional<int> process = dottedNumber(processLast.extension());
+    if (!process || !dottedNumber(serialLast.extension()) || processLast.stem().empty()) return std::nullopt;
+    return Unfinished{path.parent_path() / processLast.stem(), *process};
 }
 
 fs::path unusedPath(const fs::path& path) {

@@ -26,6 +26,15 @@ std::filesystem::path writeNewFile(const std::filesystem::path& path, std::span<
 /// too long.
 void requireWritable(const std::filesystem::path& path);
 
+/// What an interrupted write left: a part of `whole` (of a long name its beginning), by the process of that number.
+struct Unfinished {
+    std::filesystem::path whole;
+    int process = 0;
+};
+
+/// By its name; nothing for any other file.
+std::optional<Unfinished> unfinishedFile(const std::filesystem::path& path);
+
 /// `path`, or `stem-1.ext`, `stem-2.ext`, ... : the first that does not exist, as far as can be seen.
 std::filesystem::path unusedPath(const std::filesystem::path& path);
 

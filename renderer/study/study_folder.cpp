@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "base/error.h"
@@ -27,21 +28,12 @@ bool isInOurFolders(const std::string& file) {
     return false;
 }
 
-/// The file of which an interrupted writeFileAtomically() left this part: `<file>.<process>.<number>.tmp`.
-std::string wholeOf(std::string part) {
-    if (!part.ends_with(".tmp")) return "";
-    for (int i = 0; i < 3; ++i) {
-        const size_t dot = part.rfind('.');
-        part.resize(dot == std::string::npos ? 0 : dot);
-    }
-    return part;
-}
-
-/// What an interrupted writeFileAtomically() left of one of ours.
-bool isOurPart(const std::string& name) {
-    if (!name.ends_with(".tmp")) return false;
+/// Is it an unfinished one of our own files?
+bool isOurPart(const fs::path& name) {
+    const std::optional<Unfinished> part = unfinishedFile(name);
+    if (!part) return false;
     for (const char* own : {kLabel, "results.json", "results.csv", "timings.json", "report.html"})
-        if (name.starts_with(std::string(own) + '.')) return true;
+        if (part->whole == own) return true;
     return false;
 }
 
@@ -82,8 +74,8 @@ void StudyFolder::claim() {
         return;
     }
     for (const fs::directory_entry& entry : fs::directory_iterator(path_))
-        if (const std::string name = entry.path().filename().string(); name != ".lock" && !isOurPart(name))
-            throwUsage({fmt::format("holds \"{}\", which no study wrote", name), path_.string(), "an empty folder, or a new one", ""});
+        if (const fs::path name = entry.path().filename(); name != ".lock" && !isOurPart(name))
+            throwUsage({fmt::format("holds \"{}\", which no study wrote", name.string()), path_.string(), "an empty folder, or a new one", ""});
     writeLabel();
 }
 
@@ -103,14 +95,15 @@ void StudyFolder::keepOnly(const std::set<std::string>& jobs, const std::set<std
     std::error_code ignored;
     std::vector<fs::path> others;
     for (const fs::directory_entry& entry : fs::directory_iterator(path_, ignored))
-        if (isOurPart(entry.path().filename().string())) others.push_back(entry.path());
+        if (isOurPart(entry.path().filename())) others.push_back(entry.path());
     for (const fs::directory_entry& entry : fs::directory_iterator(path_ / "jobs", ignored))
         if (!jobs.contains(entry.path().filename().string())) others.push_back(entry.path());
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path_ / "jobs", ignored))
         if (entry.path().extension() == ".tmp") others.push_back(entry.path());
     for (const char* folder : kFolders)
         for (const fs::directory_entry& entry : fs::directory_iterator(path_ / folder, ignored))
-            if (files_.contains(wholeOf(entry.path().lexically_relative(path_).generic_string()))) others.push_back(entry.path());
+            if (const auto part = unfinishedFile(entry.path().lexically_relative(path_)); part && files_.contains(part->whole.generic_string()))
+                others.push_back(entry.path());
     for (const std::string& file : files_)
         if (!files.contains(file)) others.push_back(path_ / file);
     for (const fs::path& path : others) fs::remove_all(path, ignored);

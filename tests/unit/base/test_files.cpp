@@ -58,6 +58,16 @@ TEST(Files, UnreadableThingsAreNamed) {
     expectError(ErrorKind::Usage, [] { writeFileAtomically("/proc/nothing/here", "x"); }, {"/proc/nothing/here"});
 }
 
+TEST(Files, UnfinishedOnesAreKnownByTheirNames) {
+    const auto part = unfinishedFile("out/a.b.png.4711.12.tmp");
+    ASSERT_TRUE(part);
+    EXPECT_EQ(part->whole, "out/a.b.png");
+    EXPECT_EQ(part->process, 4711);
+    for (const char* name : {"a.png", "a.tmp", "a.png.12.tmp", "a.png.x.12.tmp", "a.png.12.y.tmp", "a.png.-1.12.tmp", ".1.2.tmp",
+                             "a.png.99999999999.1.tmp", "a.png.1.2.TMP", "out/1.2.tmp", ""})
+        EXPECT_FALSE(unfinishedFile(name)) << name;
+}
+
 TEST(Files, UnusedPathsCount) {
     const TemporaryFolder folder;
     EXPECT_EQ(unusedPath(folder / "shot.png"), folder / "shot.png");
