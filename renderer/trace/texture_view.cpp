@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "base/huge_pages.h"
 #include "math/colour.h"
 #include "scene/texture_taps.h"
 
@@ -58,7 +57,6 @@ TextureView makeTextureView(const Texture& t) {
     view.levelCount = static_cast<int>(t.image->levels.size());
     for (size_t k = 0; k < t.image->levels.size(); ++k) {
         const TextureImage::Level& level = t.image->levels[k];
-        gatherOnHugePages(level.bytes.data(), level.bytes.size());
         view.levels[k] = {level.bytes.data(), level.extent.width, level.extent.height};
     }
     view.wrapU = t.wrapU, view.wrapV = t.wrapV;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <span>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -63,6 +65,14 @@ bool shadesAlike(const PosedScene& a, const PosedScene& b) {
     return true;
 }
 
+/// Texels are read here and there: those of large images go onto huge pages, once however many materials show them.
+void gatherTexels(std::span<const TextureView> textures) {
+    std::unordered_set<const uint8_t*> gathered;
+    for (const TextureView& view : textures)
+        for (const TextureView::Level& level : std::span(view.levels).first(static_cast<size_t>(view.levelCount)))
+            if (gathered.insert(level.bytes).second) gatherOnHugePages(level.bytes, size_t(4) * static_cast<size_t>(level.width) * static_cast<size_t>(level.height));
+}
+
 std::shared_ptr<const PosedScene> emptyScene() {
     auto posed = std::make_shared<PosedScene>();
     posed->scene = std::make_shared<const Scene>();
@@ -116,6 +126,7 @@ void Tracer::bind(std::shared_ptr<const PosedScene> posed, std::stop_token stop)
     if (!attachedAnew && earlier && shadesAlike(*earlier, *posed)) return;
     impl_->makeTables();
     if (earlier && earlier->scene == posed->scene) return;
+    gatherTexels(scene.tables.textures);
     if (attachedAnew && byteCount() >= kManyBytes) gatherAllOnHugePages(kGatherSeconds);
     parallelFor(static_cast<int64_t>(scene.tables.materials.size()), [&](int64_t i) {
         const MaterialRecord& material = scene.tables.materials[static_cast<size_t>(i)];
