@@ -15,12 +15,13 @@ namespace lumi {
 
 namespace {
 
-#define LUMI_EGL_FUNCTIONS(X)                                                                           \
-    X(GetProcAddress, GETPROCADDRESS)                                                                   \
-    X(GetDisplay, GETDISPLAY) X(Initialize, INITIALIZE) X(Terminate, TERMINATE) X(BindAPI, BINDAPI)     \
-        X(ChooseConfig, CHOOSECONFIG) X(CreateContext, CREATECONTEXT) X(DestroyContext, DESTROYCONTEXT) \
-            X(CreatePbufferSurface, CREATEPBUFFERSURFACE) X(DestroySurface, DESTROYSURFACE)             \
-                X(MakeCurrent, MAKECURRENT) X(QueryString, QUERYSTRING)
+// clang-format off
+#define LUMI_EGL_FUNCTIONS(X) \
+    X(GetProcAddress, GETPROCADDRESS) X(GetDisplay, GETDISPLAY) X(Initialize, INITIALIZE) \
+    X(Terminate, TERMINATE) X(BindAPI, BINDAPI) X(ChooseConfig, CHOOSECONFIG) X(CreateContext, CREATECONTEXT) \
+    X(DestroyContext, DESTROYCONTEXT) X(CreatePbufferSurface, CREATEPBUFFERSURFACE) \
+    X(DestroySurface, DESTROYSURFACE) X(MakeCurrent, MAKECURRENT) X(QueryString, QUERYSTRING)
+// clang-format on
 
 struct Egl {
     SharedLibrary library{"libEGL.so.1", "libEGL.so"};
