@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "base/huge_pages.h"
 #include "base/memory.h"
 #include "support/expect_error.h"
 
@@ -48,20 +47,6 @@ TEST(Memory, ResidentBytesGrowWithUse) {
     EXPECT_GT(residentBytes(), before + (32 << 20));
     EXPECT_GE(peakResidentBytes() + (4 << 20), residentBytes());
     EXPECT_EQ(block[5], 1);
-}
-
-// Whatever the system makes of it: what is there stays, whole pages or not.
-TEST(HugePages, ContentsStay) {
-    for (const size_t size : {size_t(0), size_t(1000), (size_t(2) << 20) - 1, (size_t(9) << 20) + 4321}) {
-        std::vector<uint32_t> values(size / 4);
-        for (size_t i = 0; i < values.size(); ++i) values[i] = static_cast<uint32_t>(i * 2654435761u);
-        const uint32_t* const where = values.data();
-        gatherOnHugePages(values.data(), values.size() * 4);
-        EXPECT_EQ(values.data(), where);
-        size_t wrong = 0;
-        for (size_t i = 0; i < values.size(); ++i) wrong += values[i] != static_cast<uint32_t>(i * 2654435761u);
-        EXPECT_EQ(wrong, 0u) << size;
-    }
 }
 
 }  // namespace

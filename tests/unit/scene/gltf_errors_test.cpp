@@ -120,23 +120,25 @@ TEST(GltfErrors, LongChainsOfNodesAreNoStackOverflow) {
     EXPECT_EQ(file.load().nodes.size(), size_t(kCount));
 }
 
+/// A file with one triangle that `breakIt` has spoilt is refused with a message of these parts.
+void expectRefused(const std::function<void(GltfBuilder&)>& breakIt, const std::initializer_list<std::string>& parts) {
+    GltfBuilder file;
+    file.triangle();
+    breakIt(file);
+    file.expectRefused(parts);
+}
+
 TEST(GltfErrors, BadIndicesInTheTree) {
-    const auto refused = [](const std::function<void(GltfBuilder&)>& breakIt, const std::initializer_list<std::string>& parts) {
-        GltfBuilder file;
-        file.triangle();
-        breakIt(file);
-        file.expectRefused(parts);
-    };
-    refused([](auto& f) { f.json["nodes"][0]["mesh"] = 12; }, {"/nodes/0/mesh", "expected 0 to 0", "found 12"});
-    refused([](auto& f) { f.json["nodes"][0]["children"] = {-2}; }, {"/nodes/0/children/0"});
-    refused([](auto& f) { f.json["nodes"][0]["camera"] = 0; }, {"/nodes/0/camera", "no cameras"});
-    refused([](auto& f) { f.json["scene"] = 5; }, {"/scene"});
-    refused([](auto& f) { f.json["scenes"][0]["nodes"] = {0, 7}; }, {"/scenes/0/nodes/1", "7"});
-    refused([](auto& f) { f.json["nodes"][0]["translation"] = {1, 2}; }, {"/nodes/0/translation", "wrong length"});
-    refused([](auto& f) { f.json["nodes"][0]["scale"] = {1, 1e300, 1}; }, {"/nodes/0/scale", "finite"});
-    refused([](auto& f) { f.json["nodes"][0]["skin"] = 1; }, {"/nodes/0/skin"});
-    refused([](auto& f) { f.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 4; }, {"/nodes/0", "light"});
-    refused(
+    expectRefused([](auto& f) { f.json["nodes"][0]["mesh"] = 12; }, {"/nodes/0/mesh", "expected 0 to 0", "found 12"});
+    expectRefused([](auto& f) { f.json["nodes"][0]["children"] = {-2}; }, {"/nodes/0/children/0"});
+    expectRefused([](auto& f) { f.json["nodes"][0]["camera"] = 0; }, {"/nodes/0/camera", "no cameras"});
+    expectRefused([](auto& f) { f.json["scene"] = 5; }, {"/scene"});
+    expectRefused([](auto& f) { f.json["scenes"][0]["nodes"] = {0, 7}; }, {"/scenes/0/nodes/1", "7"});
+    expectRefused([](auto& f) { f.json["nodes"][0]["translation"] = {1, 2}; }, {"/nodes/0/translation", "wrong length"});
+    expectRefused([](auto& f) { f.json["nodes"][0]["scale"] = {1, 1e300, 1}; }, {"/nodes/0/scale", "finite"});
+    expectRefused([](auto& f) { f.json["nodes"][0]["skin"] = 1; }, {"/nodes/0/skin"});
+    expectRefused([](auto& f) { f.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 4; }, {"/nodes/0", "light"});
+    expectRefused(
         [](auto& f) {
             f.json["materials"] = {{{"normalTexture", {{"index", 3}}}}};
             f.primitive()["material"] = 0;
@@ -255,13 +257,6 @@ TEST(GltfCounts, InstancesTakeNoMoreRoomThanTheyNeed) {
     ASSERT_EQ(scene.instances.size(), 40000u);
     EXPECT_EQ(scene.instances.capacity(), 40000u);
     EXPECT_LE(scene.nodes.capacity(), 40001u);
-}
-
-void expectRefused(const std::function<void(GltfBuilder&)>& breakIt, const std::initializer_list<std::string>& parts) {
-    GltfBuilder file;
-    file.triangle();
-    breakIt(file);
-    file.expectRefused(parts);
 }
 
 TEST(GltfErrors, VersionsThatAreNotRead) {

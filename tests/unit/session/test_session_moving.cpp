@@ -42,7 +42,13 @@ TEST_F(SessionMoving, PreviewsLeaveNoTrace) {
     waitFor("some frames", [&] { return shownFrame() >= 2; });
     pause();
     session.setAll({{"render.width", 160}, {"render.height", 120}, {"render.spp", 64}});
-    session.set("camera.fov-y-deg", 30.0f);
+    bool previewed = false;
+    float fov = 30;
+    for (const Timer timer; !previewed && timer.elapsedMs() < 60'000; previewed = session.snapshot()->preview) {
+        session.set("camera.fov-y-deg", fov = fov > 60 ? 30 : fov + 0.5f);
+        std::this_thread::sleep_for(std::chrono::milliseconds(15));
+    }
+    EXPECT_TRUE(previewed);
     waitFor("the whole frame", [&] { return session.snapshot()->revision == session.revision(); });
     const auto snapshot = session.snapshot();
     const Replay replay = parseReplay(session.stateJson(), "state");
