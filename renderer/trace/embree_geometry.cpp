@@ -134,23 +134,20 @@ void EmbreeScene::findSides(const PosedScene& posed) {
     hidesBackFaces_ = false;
     const std::vector<Material>& materials = posed.scene->materials;
     const bool anywhere = std::any_of(materials.begin(), materials.end(), [](const Material& m) { return isSingleSided(m); });
-    std::unordered_map<const Mesh*, bool> singleMeshes;  // with materials of their own for their triangles
+    std::unordered_map<const Mesh*, bool> ofMeshes;  // those whose triangles have materials of their own
+    const auto isSingle = [&](uint32_t i) {
+        const std::vector<uint32_t>& ofTriangles = posed.mesh(i).triangleMaterial;
+        if (posed.scene->instances[i].material >= 0 || ofTriangles.empty()) return isSingleSided(posed, i, 0);
+        const auto [known, isNew] = ofMeshes.try_emplace(&posed.mesh(i), false);
+        for (uint32_t t = 0; isNew && t < ofTriangles.size() && !known->second; ++t) known->second = isSingleSided(posed, i, t);
+        return known->second;
+    };
     for (uint32_t i = 0; anywhere && i < plans_.size(); ++i) {
         const Plan& plan = plans_[i];
         if (plan.mode == Mode::None || plan.mode == Mode::Body || plan.mode == Mode::MovingBody) continue;
         // What is not in world space is traced in its own, where glTF's front faces turn counter-clockwise, mirrored or not.
         sides_[i].turned = plan.inWorld && glm::determinant(glm::mat3(posed.instances[i].worldFromObject)) < 0;
-        const Mesh* mesh = &posed.mesh(i);
-        const std::vector<uint32_t>& ofTriangles = mesh->triangleMaterial;
-        const bool one = posed.scene->instances[i].material >= 0 || ofTriangles.empty();
-        const auto [known, isNew] = one ? std::pair(singleMeshes.end(), false) : singleMeshes.try_emplace(mesh, false);
-        if (one) {
-            sides_[i].single = isSingleSided(posed, i, 0);
-        } else {
-            bool& single = known->second;
-            for (uint32_t t = 0; isNew && t < ofTriangles.size() && !single; ++t) single = isSingleSided(posed, i, t);
-            sides_[i].single = single;
-        }
+        sides_[i].single = isSingle(i);
         hidesBackFaces_ |= sides_[i].single;
     }
 }

@@ -84,6 +84,7 @@ void project(const ProjectionRow& row) {
         for (int i = 0; i < count; ++i) places[2 * i] = lanes.placeX[i], places[2 * i + 1] = lanes.placeY[i];
         uint32_t *targets = row.targets + first, *rows = row.rows + first;
         for (int i = 0; i < count; ++i) {
+            static_assert(SampleSet::kOccluded == 1);
             targets[i] = static_cast<uint32_t>(columns[i]) | static_cast<uint32_t>(flags[i] & SampleSet::kOccluded) << 31;
             rows[i] = lanes.found[i] ? static_cast<uint32_t>(lines[i]) : nowhere;
         }
