@@ -26,7 +26,7 @@ OTHERS = {
     "path.roulette-depth": ("0", []), "path.clamp": ("true", ["path.clamp-radiance=0.5"]),
     "path.clamp-radiance": ("0.2", ["path.clamp=true"]), "path.multiple-scattering": ("false", []),
     "path.regularize": ("true", []), "path.regularize-roughness": ("0.9", ["path.regularize=true"]),
-    "path.regularize-decay": ("0.5", ["path.regularize=true"]),
+    "path.regularize-decay": ("0.5", ["path.regularize=true"]), "path.regularize-after": ("any", ["path.regularize=true"]),
     "sampler.kind": ("halton", []), "sampler.halton-loop": ("1", ["sampler.kind=halton"]),
     "camera.select": ("side", []), "camera.jitter": ("none", []), "camera.eye": ("0,2,3", []),
     "camera.look-at": ("0,0,0", []), "camera.up": ("1,1,0", []), "camera.projection": ("orthographic", []),

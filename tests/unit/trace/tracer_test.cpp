@@ -290,7 +290,7 @@ TEST(PathSettings, DescribesEveryMember) {
     PathSettings settings;
     const auto describe = [&](ParameterVisitor& v) { settings.describe(v); };
     const auto list = listParameters(describe);
-    EXPECT_EQ(list.size(), 15u);
+    EXPECT_EQ(list.size(), 16u);
     setParameter(describe, "path.strategy", std::string("bsdf"));
     setParameter(describe, "path.max-depth", 3);
     setParameter(describe, "sampler.kind", std::string("halton"));
