@@ -286,7 +286,7 @@ TEST(StableTaps, SubpixelsAreDrawnAsPixels) {
     samples.words.assign(64, 0);
     samples.words[4 * 8 + 4] = bit(0) | bit(5) | bit(5 + kCount);
     Image out;
-    drawSubpixels(samples, {4, 4}, out);
+    drawSubpixels(samples, out);
     // The window is 2 x 2 pixels, from (3, 3): pixel (4, 4) begins in the middle.
     EXPECT_GT(out.at(2, 4, 4), 0.5f);
     EXPECT_LT(out.at(0, 4, 4), 0.5f);

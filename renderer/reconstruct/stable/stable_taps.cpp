@@ -115,27 +115,25 @@ std::vector<Tap> stableTaps() {
         {.name = "reconstructed", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "The image before temporal integration"}};
 }
 
-void drawSubpixels(const SampleSet& samples, Pixel centre, Image& out) {
-    const Vec3 kVisible(0.05f, 0.25f, 1), kOccluded(1, 0.05f, 0.05f), kNone(0), kEmpty[2] = {Vec3(0.02f), Vec3(0.06f)};
+void drawSubpixels(const SampleSet& samples, Image& out) {
+    const Vec3 kVisible(0.05f, 0.25f, 1), kOccluded(1, 0.05f, 0.05f), kEmpty[2] = {Vec3(0.02f), Vec3(0.06f)};
     const Extent2 extent = samples.extent;
     out.reset(extent, 3);
-    const int left = centre.x - extent.width / (2 * subpixel::kSide), top = centre.y - extent.height / (2 * subpixel::kSide);
+    const int left = extent.width / 2 - extent.width / (2 * subpixel::kSide);
+    const int top = extent.height / 2 - extent.height / (2 * subpixel::kSide);
     for (int y = 0; y < extent.height; ++y)
         for (int x = 0; x < extent.width; ++x) {
             const Pixel p{left + x / subpixel::kSide, top + y / subpixel::kSide};
-            Vec3 colour = kNone;
-            if (p.x >= 0 && p.y >= 0 && p.x < extent.width && p.y < extent.height) {
-                const uint32_t word = samples.words[static_cast<size_t>(p.y) * static_cast<size_t>(extent.width) + static_cast<size_t>(p.x)];
-                const uint32_t bit = subpixel::bit(y % subpixel::kSide * subpixel::kSide + x % subpixel::kSide);
-                colour = subpixel::visible(word) & bit ? kVisible : subpixel::occupied(word) & bit ? kOccluded : kEmpty[(p.x + p.y) & 1];
-            }
+            const uint32_t word = samples.words[static_cast<size_t>(p.y) * static_cast<size_t>(extent.width) + static_cast<size_t>(p.x)];
+            const uint32_t bit = subpixel::bit(y % subpixel::kSide * subpixel::kSide + x % subpixel::kSide);
+            const Vec3 colour = subpixel::visible(word) & bit ? kVisible : subpixel::occupied(word) & bit ? kOccluded : kEmpty[(p.x + p.y) & 1];
             for (int c = 0; c < 3; ++c) out.at(c, x, y) = colour[c];
         }
 }
 
 void StableModule::keepTaps(const FrameContext& context, const SampleSet& samples) {
     if (context.wantedTaps.empty()) return;
-    if (Image* out = taps_.target("subpixels")) drawSubpixels(samples, {extent_.width / 2, extent_.height / 2}, *out);
+    if (Image* out = taps_.target("subpixels")) drawSubpixels(samples, *out);
     drawBitmasks(samples, taps_.target("bitmasks"));
     fill(taps_.target("occupancy"), extent_, [&](size_t p) { return static_cast<float>(subpixel::occupied(samples.words[p])); });
     fill(taps_.target("occlusion"), extent_, [&](size_t p) { return static_cast<float>(subpixel::occluded(samples.words[p])); });

@@ -1,8 +1,8 @@
 #include "session/replay.h"
 
 #include "base/files.h"
-#include "image/exr.h"
 #include "support/expect_error.h"
+#include "support/sky_file.h"
 #include "support/temporary_folder.h"
 #include "support/tiny_scene.h"
 
@@ -178,13 +178,7 @@ TEST(StateLog, HoldsWhatAReplayNeeds) {
 
 TEST(StateLog, TellsWhichSkyItWas) {
     TemporaryFolder folder;
-    const auto write = [&](float radiance) {
-        Image sky({4, 2}, 3);
-        sky.fill(radiance);
-        ExrLayers layers;
-        layers.add("", "RGB", sky);
-        writeExr(folder / "sky.exr", layers);
-    };
+    const auto write = [&](float radiance) { writeSky(folder / "sky.exr", radiance); };
     write(1);
     Recorder recorder;
     Document document(tinyScene());

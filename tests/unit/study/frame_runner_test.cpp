@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "image/exr.h"
 #include "study/records.h"
 #include "study/study_file.h"
 #include "study/temporal_metrics.h"
+#include "support/sky_file.h"
 #include "support/temporary_folder.h"
 #include "support/tiny_scene.h"
 
@@ -79,13 +79,7 @@ TEST(FrameRunner, FramesWithoutABuildCountAsNone) {
 
 TEST(FrameRunner, AJobDependsOnWhatItsSkyHolds) {
     TemporaryFolder folder;
-    const auto write = [&](float radiance) {
-        Image sky({4, 2}, 3);
-        sky.fill(radiance);
-        ExrLayers layers;
-        layers.add("", "RGB", sky);
-        writeExr(folder / "sky.exr", layers);
-    };
+    const auto write = [&](float radiance) { writeSky(folder / "sky.exr", radiance); };
     SmallStudy small("\"environment.file\": \"" + (folder / "sky.exr").string() + "\"");
     const JobContext context = small.context();
     write(1);
