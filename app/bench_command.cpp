@@ -16,9 +16,12 @@ namespace {
 
 json toJson(const BenchResult& result) {
     const auto orNull = [](double value) { return value > 0 && std::isfinite(value) ? json(value) : json(); };
-    json all = {{"name", result.name},        {"value", result.value},
-                {"unit", result.unit},        {"median_ms", orNull(result.medianMs)},
-                {"spread", result.spread},    {"limit", orNull(result.limit)},
+    json all = {{"name", result.name},
+                {"value", result.value},
+                {"unit", result.unit},
+                {"median_ms", orNull(result.medianMs)},
+                {"spread", result.spread},
+                {"limit", orNull(result.limit)},
                 {"ratio_to_limit", orNull(result.ratioToLimit())}};
     if (result.isMark) all["holds"] = result.holds();
     return all;
@@ -36,7 +39,8 @@ void printRow(const BenchResult& result) {
 
 }  // namespace
 
-int runBenchCommand(const std::string& filter, bool check, const MachineOptions& machine, MessageLog& log, std::stop_token stop) {
+int runBenchCommand(const std::string& filter, bool check, const MachineOptions& machine, MessageLog& log,
+                    std::stop_token stop) {
     json results = json::array();
     bool first = true, holds = true;
     const auto onResult = [&](const BenchResult& result) {

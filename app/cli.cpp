@@ -38,8 +38,8 @@ public:
         app_.require_subcommand(0, 1);
         app_.get_formatter()->column_width(34);
         addWindow();
-        for (const auto make : {makeRenderOptions, makeReferenceOptions, makeMergeOptions, makeCompareOptions, makeStudyOptions,
-                                makeBenchOptions, makeInfoOptions, makeListOptions, makeViewOptions})
+        for (const auto make : {makeRenderOptions, makeReferenceOptions, makeMergeOptions, makeCompareOptions,
+                                makeStudyOptions, makeBenchOptions, makeInfoOptions, makeListOptions, makeViewOptions})
             commands_.push_back(make(app_, line_));
     }
 
@@ -71,7 +71,8 @@ private:
         addMachine(app_, line_.machine, true);
         app_.add_option("--captures", line_.captures, "Folder for screenshots (the current one)")->type_name("DIR");
         app_.add_option("--ui-map", line_.uiMap, "Write where every item of the window is to this file, as JSON")
-            ->type_name("FILE")->group("Testing");
+            ->type_name("FILE")
+            ->group("Testing");
     }
 
     CommandLine finished() {

@@ -74,19 +74,19 @@ enum class Command { Window, Render, Reference, Merge, Compare, Study, Bench, In
 struct CommandLine {
     Command command = Command::Window;
     MachineOptions machine;
-    RenderOptions render;   ///< Render
-    ReferenceCommand reference;  ///< Reference
-    MergeCommand merge;     ///< Merge
-    CompareOptions compare; ///< Compare
-    SceneOptions scene;     ///< Window, Info, View
-    bool check = false;     ///< Info
+    RenderOptions render;                   ///< Render
+    ReferenceCommand reference;             ///< Reference
+    MergeCommand merge;                     ///< Merge
+    CompareOptions compare;                 ///< Compare
+    SceneOptions scene;                     ///< Window, Info, View
+    bool check = false;                     ///< Info
     std::filesystem::path writeCameraPath;  ///< Info; may be empty
-    StudyCommandOptions study;  ///< Study
-    std::string filter;     ///< Bench: regular expression over names
-    ListOptions list;       ///< List
-    ViewOptions view;       ///< View: script, out, samples, size; View and Window fill `start` from `scene`
+    StudyCommandOptions study;              ///< Study
+    std::string filter;                     ///< Bench: regular expression over names
+    ListOptions list;                       ///< List
+    ViewOptions view;  ///< View: script, out, samples, size; View and Window fill `start` from `scene`
     std::filesystem::path uiMap, captures;  ///< Window
-    std::string text;       ///< PrintAndExit: help or version
+    std::string text;                       ///< PrintAndExit: help or version
 };
 
 /// Throws Error(Usage).

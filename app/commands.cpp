@@ -23,10 +23,11 @@ void warnOfIdle(const Document& document, const SceneOptions& options, MessageLo
     for (const TypedValue& value : options.values) {
         const std::string instance = value.id.substr(0, value.id.find('.'));
         const std::string module = instance.substr(0, instance.find('@'));
-        const bool isModule = std::any_of(catalog.begin(), catalog.end(), [&](const ModuleEntry& e) { return module == e.id; });
+        const bool isModule =
+            std::any_of(catalog.begin(), catalog.end(), [&](const ModuleEntry& e) { return module == e.id; });
         if (!isModule || std::find(running.begin(), running.end(), instance) != running.end()) continue;
-        log.warning(fmt::format("{} {}={}: no effect, {} does not run; {} does", value.option, value.id, value.text, instance,
-                                fmt::join(running, " and ")));
+        log.warning(fmt::format("{} {}={}: no effect, {} does not run; {} does", value.option, value.id, value.text,
+                                instance, fmt::join(running, " and ")));
     }
 }
 

@@ -14,10 +14,10 @@ namespace lumi {
 // Each command returns the program's exit code and throws Error; results go to standard output, all else to standard
 // error.
 int runRender(const RenderOptions& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop);
-/// With `check` the signals' contract is verified too; 1 if a rule is broken. The camera's keys go to `writeCameraPath`,
-/// if that is not empty.
-int runInfo(const SceneOptions& options, bool check, const std::filesystem::path& writeCameraPath, const MachineOptions& machine, MessageLog& log,
-            std::stop_token stop);
+/// With `check` the signals' contract is verified too; 1 if a rule is broken. The camera's keys go to
+/// `writeCameraPath`, if that is not empty.
+int runInfo(const SceneOptions& options, bool check, const std::filesystem::path& writeCameraPath,
+            const MachineOptions& machine, MessageLog& log, std::stop_token stop);
 int runList(const ListOptions& options, const MachineOptions& machine);
 
 /// Threads, instruction set and memory limit, before anything is computed.
@@ -38,8 +38,8 @@ std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const 
 void followCameraPath(Document& document, const std::optional<CameraPath>& path);
 std::optional<CameraPath> readCameraPathOf(const SceneOptions& options);
 
-/// A document of the scene with all values of the options. A --set of a method's parameter counts for that one instance:
-/// where it is none of those that run, the log warns.
+/// A document of the scene with all values of the options. A --set of a method's parameter counts for that one
+/// instance: where it is none of those that run, the log warns.
 Document makeDocument(std::shared_ptr<const Scene> scene, const SceneOptions& options, MessageLog& log);
 
 }  // namespace lumi

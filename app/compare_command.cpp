@@ -23,7 +23,8 @@ MetricResults measureAll(const std::vector<const Metric*>& metrics, const ImageP
 
 void addMeasurement(ordered_json& report, const std::string& id, const Measurement& measurement) {
     report["metrics"][id] = std::isfinite(measurement.value) ? ordered_json(measurement.value) : ordered_json();
-    for (const auto& [name, value] : measurement.details) report["details"][id][name] = std::isfinite(value) ? ordered_json(value) : ordered_json();
+    for (const auto& [name, value] : measurement.details)
+        report["details"][id][name] = std::isfinite(value) ? ordered_json(value) : ordered_json();
     if (!measurement.reason.empty()) report["no_value"][id] = measurement.reason;
 }
 
@@ -46,8 +47,8 @@ void printTable(const ComparedPair& compared, const MetricResults& results, cons
         for (const auto& [name, value] : result.details) fmt::print("{:<10} {} = {}\n", "", name, valueText(value));
     }
     fmt::print("\n{}x{}, {} pixels count; not finite: {} in the image, {} in the reference; exposure {:g} EV ({})\n",
-               pair.image.width(), pair.image.height(), pair.countedPixels, pair.nonFiniteImage, pair.nonFiniteReference,
-               compared.exposure.ev, compared.exposure.from);
+               pair.image.width(), pair.image.height(), pair.countedPixels, pair.nonFiniteImage,
+               pair.nonFiniteReference, compared.exposure.ev, compared.exposure.from);
     if (maps.wanted()) fmt::print("{}\n", maps.text());
 }
 
@@ -70,7 +71,8 @@ int runCompare(const CompareOptions& options) {
     std::vector<const Metric*> wanted;
     for (const std::string& id : options.metrics) {
         for (const SequenceMetric& metric : sequenceMetricCatalog())
-            if (id == metric.id) throwUsage({"\"" + id + "\" needs frames", "--metrics", "images called like frame.%04d.exr", ""});
+            if (id == metric.id)
+                throwUsage({"\"" + id + "\" needs frames", "--metrics", "images called like frame.%04d.exr", ""});
         wanted.push_back(&findMetric(id, "--metrics"));
     }
     if (wanted.empty())
@@ -85,7 +87,8 @@ int runCompare(const CompareOptions& options) {
     if (options.quiet) return 0;
     if (!compared.exposure.warning.empty()) fmt::print(stderr, "warning: {}\n", compared.exposure.warning);
     if (compared.pair.nonFinitePixels > 0)
-        fmt::print(stderr, "warning: {} pixels are NaN or infinite; they count in no metric\n", compared.pair.nonFinitePixels);
+        fmt::print(stderr, "warning: {} pixels are NaN or infinite; they count in no metric\n",
+                   compared.pair.nonFinitePixels);
     return 0;
 }
 

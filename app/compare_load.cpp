@@ -17,8 +17,8 @@ namespace {
 
 Image cropped(const Image& image, const std::array<int, 4>& crop, const std::string& where) {
     const auto [x, y, width, height] = crop;
-    const bool inside = x >= 0 && y >= 0 && width > 0 && height > 0 && x + width <= image.width() &&
-                        y + height <= image.height();
+    const bool inside =
+        x >= 0 && y >= 0 && width > 0 && height > 0 && x + width <= image.width() && y + height <= image.height();
     if (!inside)
         throwUsage({"the crop leaves the image", where, fmt::format("a part of {}x{}", image.width(), image.height()),
                     fmt::format("{},{},{},{}", x, y, width, height)});
@@ -74,8 +74,8 @@ ExposureUsed commonExposure(const fs::path& imagePath, const LoadedFile& image, 
     if (reference.exposureEv) used = {*reference.exposureEv, "state of " + nameOf(referencePath), ""};
     else if (image.exposureEv) used = {*image.exposureEv, "state of " + nameOf(imagePath), ""};
     if (image.exposureEv && *image.exposureEv != used.ev)
-        used.warning = fmt::format("{} was made at an exposure of {} EV, {} at {}; both are judged at {}", nameOf(imagePath),
-                                   *image.exposureEv, nameOf(referencePath), used.ev, used.ev);
+        used.warning = fmt::format("{} was made at an exposure of {} EV, {} at {}; both are judged at {}",
+                                   nameOf(imagePath), *image.exposureEv, nameOf(referencePath), used.ev, used.ev);
     return used;
 }
 
@@ -86,8 +86,9 @@ ExposureUsed exposureBesidePicture(const CompareOptions& options, const fs::path
     used.ev = options.exposureEv.value_or(linear.exposureEv.value_or(0));
     const char* from = options.exposureEv ? "--exposure for" : linear.exposureEv ? "state of" : "no state in";
     used.from = fmt::format("{} {}; {} stored as shown", from, nameOf(linearPath), nameOf(picturePath));
-    used.warning = fmt::format("{} is a picture as shown: a tone curve in it and light beyond white count as differences from {}",
-                               nameOf(picturePath), nameOf(linearPath));
+    used.warning =
+        fmt::format("{} is a picture as shown: a tone curve in it and light beyond white count as differences from {}",
+                    nameOf(picturePath), nameOf(linearPath));
     return used;
 }
 
@@ -101,12 +102,14 @@ ExposureUsed matchExposures(const CompareOptions& options, const fs::path& image
         return used;
     }
     if (options.exposureEv) return {*options.exposureEv, "--exposure", ""};
-    return image.linear ? commonExposure(imagePath, image, referencePath, reference) : ExposureUsed{0, "stored as shown", ""};
+    return image.linear ? commonExposure(imagePath, image, referencePath, reference)
+                        : ExposureUsed{0, "stored as shown", ""};
 }
 
 }  // namespace
 
-ComparedPair loadPair(const CompareOptions& options, const fs::path& imagePath, const fs::path& referencePath, bool layers) {
+ComparedPair loadPair(const CompareOptions& options, const fs::path& imagePath, const fs::path& referencePath,
+                      bool layers) {
     LoadedFile image = load(imagePath, false), reference = load(referencePath, layers);
     ComparedPair loaded;
     loaded.exposure = matchExposures(options, imagePath, image, referencePath, reference);

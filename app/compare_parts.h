@@ -10,8 +10,8 @@
 namespace lumi {
 
 /// Stops for the metrics that judge images as shown: --exposure; else those in the state of the reference, then of the
-/// image; else 0. A picture that is stored as shown (.png and the like) has its exposure in it already: beside a linear file
-/// only that file gets these stops, and the picture is judged as it is stored.
+/// image; else 0. A picture that is stored as shown (.png and the like) has its exposure in it already: beside a linear
+/// file only that file gets these stops, and the picture is judged as it is stored.
 struct ExposureUsed {
     float ev = 0;
     std::string from;     ///< "--exposure", "state of ref.exr", "no state", "state of ref.exr; a.png stored as shown"
@@ -33,7 +33,8 @@ using MetricResults = std::vector<std::pair<const Metric*, Measurement>>;
 /// Measures, and adds the maps where they are wanted.
 MetricResults measureAll(const std::vector<const Metric*>& metrics, const ImagePair& pair, ErrorMaps& maps,
                          const std::string& suffix);
-/// Adds a measurement to the members "metrics", "details" and "no_value" (why a number is NaN or infinite, which is null).
+/// Adds a measurement to the members "metrics", "details" and "no_value" (why a number is NaN or infinite, which is
+/// null).
 void addMeasurement(nlohmann::ordered_json& report, const std::string& id, const Measurement& measurement);
 /// Members "nonfinite_pixels" (of the two together), "nonfinite_image", "nonfinite_reference" and "counted_pixels".
 void addCounts(nlohmann::ordered_json& report, const ImagePair& pair);

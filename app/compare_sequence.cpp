@@ -67,7 +67,8 @@ struct Frame {
 
 class SequenceComparison {
 public:
-    explicit SequenceComparison(const CompareOptions& options) : options_(options), wanted_(wantedMetrics(options.metrics)), maps_(options.maps) {}
+    explicit SequenceComparison(const CompareOptions& options)
+        : options_(options), wanted_(wantedMetrics(options.metrics)), maps_(options.maps) {}
 
     int run() {
         findFrames();
@@ -80,7 +81,8 @@ public:
         maps_.finish();
         if (maps_.wanted()) report_.maps = maps_.ranges(), report_.mapsText = maps_.text();
         if (motionMissing_)
-            report_.warnings.emplace_back("temporal_reprojected wants references with the layer motion (reference --buffers motion)");
+            report_.warnings.emplace_back(
+                "temporal_reprojected wants references with the layer motion (reference --buffers motion)");
         printSequence(report_, options_);
         return 0;
     }
@@ -88,24 +90,26 @@ public:
 private:
     std::string imageName(int64_t number) const { return numberedName(options_.image.string(), number); }
     std::string referenceName(int64_t number) const {
-        return isPattern(options_.reference) ? numberedName(options_.reference.string(), number) : options_.reference.string();
+        return isPattern(options_.reference) ? numberedName(options_.reference.string(), number)
+                                             : options_.reference.string();
     }
     std::string suffix(int64_t number) const { return fmt::format(".{:04}", number); }
 
     void findFrames() {
         if (options_.frames)
             for (int64_t n = options_.frames->first; n < options_.frames->second; ++n) numbers_.push_back(n);
-        else
-            numbers_ = framesThere(options_.image.string());
+        else numbers_ = framesThere(options_.image.string());
         if (numbers_.empty()) throwBadInput({"no such files", options_.image.string(), "frames 0, 1, 2, ...", ""});
         for (const int64_t number : numbers_)
             for (const std::string& name : {imageName(number), referenceName(number)})
-                if (!fs::exists(name)) throwBadInput({"no such file", name, "an image and a reference for each frame", ""});
+                if (!fs::exists(name))
+                    throwBadInput({"no such file", name, "an image and a reference for each frame", ""});
         for (size_t i = 1; i < numbers_.size(); ++i)
             for (int64_t n = numbers_[i - 1] + 1; n < numbers_[i]; ++n) report_.missing.push_back(n);
         if (options_.frames || !isPattern(options_.reference)) return;
         for (const int64_t number : framesThere(options_.reference.string()))
-            if (!std::binary_search(numbers_.begin(), numbers_.end(), number)) report_.referencesAlone.push_back(number);
+            if (!std::binary_search(numbers_.begin(), numbers_.end(), number))
+                report_.referencesAlone.push_back(number);
     }
 
     void compare(int64_t number) {
@@ -118,7 +122,8 @@ private:
         for (const char* key : {"metrics", "details"}) entry[key] = ordered_json::object();
         for (const auto& [metric, result] : measureAll(wanted_.images, pair, maps_, suffix(number)))
             addMeasurement(entry, metric->id, result);
-        Frame now{std::move(compared.image), std::move(compared.reference), std::move(compared.depth), std::move(compared.motion)};
+        Frame now{std::move(compared.image), std::move(compared.reference), std::move(compared.depth),
+                  std::move(compared.motion)};
         if (previousNumber_ >= 0) addConsecutive(pair, now, number, entry);
         if (wanted_.lag) lag_.add(number, now.image, now.reference, pair.mask.empty() ? nullptr : &pair.mask);
         report_.frames.push_back(std::move(entry));
@@ -134,23 +139,28 @@ private:
             report_.exposureEv = compared.exposure.ev, report_.exposureFrom = compared.exposure.from;
         }
         if (pair.image.width() != report_.width || pair.image.height() != report_.height)
-            throwBadInput({"frames differ in size", imageName(number), fmt::format("{}x{}", report_.width, report_.height),
+            throwBadInput({"frames differ in size", imageName(number),
+                           fmt::format("{}x{}", report_.width, report_.height),
                            fmt::format("{}x{}", pair.image.width(), pair.image.height())});
-        if (!compared.exposure.warning.empty() && report_.warnings.empty()) report_.warnings.push_back(compared.exposure.warning);
+        if (!compared.exposure.warning.empty() && report_.warnings.empty())
+            report_.warnings.push_back(compared.exposure.warning);
         if (compared.exposure.ev != report_.exposureEv)
-            throwBadInput({"frames were made at different exposures", imageName(number), fmt::format("{} EV as before, or --exposure", report_.exposureEv),
+            throwBadInput({"frames were made at different exposures", imageName(number),
+                           fmt::format("{} EV as before, or --exposure", report_.exposureEv),
                            fmt::format("{} EV", compared.exposure.ev)});
         report_.nonFinite += pair.nonFinitePixels;
         report_.nonFiniteImage += pair.nonFiniteImage, report_.nonFiniteReference += pair.nonFiniteReference;
     }
 
-    Measurement consecutive(const ImagePair& pair, const Frame& now, const Image& image, const Image& before, bool follow, bool wantMap) const {
+    Measurement consecutive(const ImagePair& pair, const Frame& now, const Image& image, const Image& before,
+                            bool follow, bool wantMap) const {
         TemporalPair temporal{image, before};
         temporal.exposureEv = pair.exposureEv;
         if (!pair.mask.empty()) temporal.mask = &pair.mask;
         if (!follow) return measureTemporal(temporal, wantMap);
         temporal.motion = &now.motion;
-        if (!now.depth.empty() && !previous_.depth.empty()) temporal.depth = &now.depth, temporal.previousDepth = &previous_.depth;
+        if (!now.depth.empty() && !previous_.depth.empty())
+            temporal.depth = &now.depth, temporal.previousDepth = &previous_.depth;
         return measureReprojectedTemporal(temporal, wantMap);
     }
 

@@ -37,7 +37,8 @@ void printJson(const SequenceReport& report) {
     for (const SequenceMean& mean : sequenceMeans(report)) {
         all["metrics"][mean.id] = mean.frames > 0 ? ordered_json(mean.mean) : ordered_json();
         all["frames_counted"][mean.id] = mean.frames;
-        if (mean.frames == 0) all["no_value"][mean.id] = mean.present > 0 ? "no frame has a value" : "there is one frame only";
+        if (mean.frames == 0)
+            all["no_value"][mean.id] = mean.present > 0 ? "no frame has a value" : "there is one frame only";
     }
     if (report.lagWanted) {
         all["metrics"]["lag"] = std::isfinite(report.lag.value) ? ordered_json(report.lag.value) : ordered_json();
@@ -65,11 +66,13 @@ void printLeftOut(const SequenceReport& report, const SequenceMean& mean) {
 
 void printLag(const Lag& lag) {
     if (lag.stepFrame < 0) fmt::print("lag: no value: {}\n", lag.reason);
-    else if (std::isnan(lag.value)) fmt::print("lag: {} after the step at frame {}; response", lag.reason, lag.stepFrame);
+    else if (std::isnan(lag.value))
+        fmt::print("lag: {} after the step at frame {}; response", lag.reason, lag.stepFrame);
     else fmt::print("lag: {} frames after the step at frame {}; response", lag.value, lag.stepFrame);
     for (const double value : lag.curve) fmt::print(" {}", std::isnan(value) ? "-" : fmt::format("{:.3f}", value));
     if (!lag.curve.empty()) fmt::print("\n");
-    if (lag.nonFinitePixels > 0) fmt::print("lag: {} pixels of these frames are not finite; they count for nothing\n", lag.nonFinitePixels);
+    if (lag.nonFinitePixels > 0)
+        fmt::print("lag: {} pixels of these frames are not finite; they count for nothing\n", lag.nonFinitePixels);
 }
 
 void printTable(const SequenceReport& report) {
@@ -86,7 +89,8 @@ void printTable(const SequenceReport& report) {
         for (const SequenceMean& mean : means) line += cell(valueText(numberOf(frame["metrics"], mean.id)));
         fmt::print("{}{}{}\n", line, cell(frame["nonfinite_image"].dump()), cell(frame["nonfinite_reference"].dump()));
     }
-    fmt::print("{}{}{}\n\n", last, cell(std::to_string(report.nonFiniteImage)), cell(std::to_string(report.nonFiniteReference)));
+    fmt::print("{}{}{}\n\n", last, cell(std::to_string(report.nonFiniteImage)),
+               cell(std::to_string(report.nonFiniteReference)));
     fmt::print("{}x{}, {} frames; not finite: {} pixels in the images, {} in the references; exposure {:g} EV ({})\n",
                report.width, report.height, report.frames.size(), report.nonFiniteImage, report.nonFiniteReference,
                report.exposureEv, report.exposureFrom);
@@ -97,7 +101,8 @@ void printTable(const SequenceReport& report) {
 
 std::string listed(const std::vector<int64_t>& numbers) {
     std::string text;
-    for (size_t i = 0; i < std::min<size_t>(numbers.size(), 8); ++i) text += (i > 0 ? ", " : "") + std::to_string(numbers[i]);
+    for (size_t i = 0; i < std::min<size_t>(numbers.size(), 8); ++i)
+        text += (i > 0 ? ", " : "") + std::to_string(numbers[i]);
     return numbers.size() > 8 ? fmt::format("{} and {} more", text, numbers.size() - 8) : text;
 }
 
@@ -130,7 +135,8 @@ void printSequence(const SequenceReport& report, const CompareOptions& options) 
         fmt::print(stderr, "warning: {} pixels are NaN or infinite; they count in no metric\n", report.nonFinite);
     if (!report.missing.empty()) fmt::print(stderr, "warning: there is no image of frame {}\n", listed(report.missing));
     if (!report.referencesAlone.empty())
-        fmt::print(stderr, "warning: references without an image are left out: frame {}\n", listed(report.referencesAlone));
+        fmt::print(stderr, "warning: references without an image are left out: frame {}\n",
+                   listed(report.referencesAlone));
 }
 
 }  // namespace lumi

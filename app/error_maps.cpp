@@ -50,7 +50,8 @@ nlohmann::ordered_json ErrorMaps::ranges() const {
 std::string ErrorMaps::text() const {
     std::string text;
     for (const Maps& maps : all_)
-        text += fmt::format("{}{} 0 to {:.4g}", text.empty() ? "colours of the maps: " : ", ", maps.metric, maps.range.high());
+        text += fmt::format("{}{} 0 to {:.4g}", text.empty() ? "colours of the maps: " : ", ", maps.metric,
+                            maps.range.high());
     return text;
 }
 

@@ -8,8 +8,8 @@
 
 namespace lumi {
 
-/// The error maps of one `compare`: `<metric><suffix>.exr` as they are, and .png in false colour. All maps of a metric share
-/// the range of a MapRange, so that frames of a sequence can be laid beside each other.
+/// The error maps of one `compare`: `<metric><suffix>.exr` as they are, and .png in false colour. All maps of a metric
+/// share the range of a MapRange, so that frames of a sequence can be laid beside each other.
 class ErrorMaps {
 public:
     /// Makes the folder; an empty name: no maps are wanted. Throws Error(Usage), Error(Resources) if it cannot be made.

@@ -7,9 +7,7 @@ namespace lumi {
 
 namespace {
 
-InputQueue& queueOf(GLFWwindow* window) {
-    return *static_cast<InputQueue*>(glfwGetWindowUserPointer(window));
-}
+InputQueue& queueOf(GLFWwindow* window) { return *static_cast<InputQueue*>(glfwGetWindowUserPointer(window)); }
 
 Key keyFrom(int key) {
     if (key >= GLFW_KEY_SPACE && key <= GLFW_KEY_GRAVE_ACCENT) return static_cast<Key>(key);

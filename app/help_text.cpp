@@ -80,7 +80,8 @@ std::string renderFooter() {
            "  lumiscope render atrium --module none --frames 8 --buffers all --out atrium.%04d.exr\n"
            "  lumiscope render room --set path.max-depth=3 --set camera.aperture=0.02 --size 640x360\n"
            "  lumiscope render room --camera-path walk.json --frames 240 --out walk.%04d.exr\n"
-           "  lumiscope render room --stereo --set camera.interaxial=0.1 --out room.png    room.left.png, room.right.png\n"
+           "  lumiscope render room --stereo --set camera.interaxial=0.1 --out room.png    room.left.png, "
+           "room.right.png\n"
            "  lumiscope render --replay cornell.png --out again.png\n\n"
            "Frames that are there with the same state are kept: the same command goes on after an interruption.\n\n" +
            sceneList() + moduleList() + "\n" + kExitCodes;
@@ -97,13 +98,19 @@ std::string benchFooter() {
            "trace/frame: frames a second at 640x360, one sample a pixel, one bounce; the limit is its bare rays.\n"
            "trace/emitters: frames a second under 100,352 triangles that shine; the limit is the same under ten.\n"
            "trace/embree-pathtracer: Mray/s; the limit is Embree's own path tracer (Debian's embree-tools).\n"
-           "load, build: seconds to read a scene and to make it ready for rays. memory: peak of loading and rendering;\n"
+           "load, build: seconds to read a scene and to make it ready for rays. memory: peak of loading and "
+           "rendering;\n"
            "the limit is twice what scene and tracer hold. Sponza is measured where $LUMISCOPE_ASSETS holds it.\n"
-           "metric/ID: Mpixel/s on 1920x1080. filter/MODULE, filter/MODULE/STAGE: frames a second at 1280x720. The limit of\n"
-           "both streams what they read through memory once, in the same run; memory/metric/ID and memory/filter/MODULE tell\n"
-           "their peak memory beside it. The stage `filter` is all stages but antialiasing. size/svgf: that stage in Mpixel/s at\n"
-           "two other sizes; the limit is the same at 1280x720. Medians of 5 to 25 runs; spread is (slowest - fastest) / median.\n"
-           "mark/svgf: what the project claims on two cores, at most the limit: ms of a frame at 1280x720, and times a pixel at\n"
+           "metric/ID: Mpixel/s on 1920x1080. filter/MODULE, filter/MODULE/STAGE: frames a second at 1280x720. The "
+           "limit of\n"
+           "both streams what they read through memory once, in the same run; memory/metric/ID and "
+           "memory/filter/MODULE tell\n"
+           "their peak memory beside it. The stage `filter` is all stages but antialiasing. size/svgf: that stage in "
+           "Mpixel/s at\n"
+           "two other sizes; the limit is the same at 1280x720. Medians of 5 to 25 runs; spread is (slowest - fastest) "
+           "/ median.\n"
+           "mark/svgf: what the project claims on two cores, at most the limit: ms of a frame at 1280x720, and times a "
+           "pixel at\n"
            "other sizes by that at 1280x720. With --check the exit code is 1 where one is missed.\n";
 }
 
@@ -143,9 +150,12 @@ std::string compareFooter() {
 }
 
 std::string studyFooter() {
-    return "Writes results.json, results.csv, timings.json, report.html, figures/ (inset strips as SVG and PNG) and tables/ (LaTeX).\n"
-           "Run it again after an interruption, and it goes on; results.json and results.csv come out the same bytes as without.\n"
-           "Run it again with other figures, and only those are drawn. References are kept for the next study. A folder belongs to\n"
+    return "Writes results.json, results.csv, timings.json, report.html, figures/ (inset strips as SVG and PNG) and "
+           "tables/ (LaTeX).\n"
+           "Run it again after an interruption, and it goes on; results.json and results.csv come out the same bytes "
+           "as without.\n"
+           "Run it again with other figures, and only those are drawn. References are kept for the next study. A "
+           "folder belongs to\n"
            "one study and preset.\n\n"
            "Examples:\n"
            "  lumiscope study convergence --preset quick\n"

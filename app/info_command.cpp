@@ -83,15 +83,19 @@ json infoJson(const Scene& scene, const std::filesystem::path& file, const Scene
     for (const Material& m : scene.materials) materialNames.push_back(m.name);
     for (const Light& l : scene.lights) lightNames.push_back(l.name);
     for (const SceneCamera& c : scene.cameras) cameraNames.push_back(c.camera.name);
-    const std::vector<std::string> materialIds = slugs(materialNames, "material"), lightIds = slugs(lightNames, "light"),
-                                   cameraIds = slugs(cameraNames, "camera");
+    const std::vector<std::string> materialIds = slugs(materialNames, "material"),
+                                   lightIds = slugs(lightNames, "light"), cameraIds = slugs(cameraNames, "camera");
     for (size_t i = 0; i < materialIds.size(); ++i)
         if (!ofBodies[i])
-            materials.push_back({{"id", materialIds[i]}, {"title", materialNames[i]}, {"emits", scene.materials[i].emits()}});
+            materials.push_back(
+                {{"id", materialIds[i]}, {"title", materialNames[i]}, {"emits", scene.materials[i].emits()}});
     for (size_t i = 0; i < lightIds.size(); ++i)
-        lights.push_back({{"id", lightIds[i]}, {"title", lightNames[i]}, {"type", lightTypeName(scene.lights[i].type)}});
+        lights.push_back(
+            {{"id", lightIds[i]}, {"title", lightNames[i]}, {"type", lightTypeName(scene.lights[i].type)}});
     for (size_t i = 0; i < cameraIds.size(); ++i)
-        cameras.push_back({{"id", cameraIds[i]}, {"title", cameraNames[i]}, {"eye", vectorJson(scene.cameras[i].camera.eye)},
+        cameras.push_back({{"id", cameraIds[i]},
+                           {"title", cameraNames[i]},
+                           {"eye", vectorJson(scene.cameras[i].camera.eye)},
                            {"look_at", vectorJson(scene.cameras[i].camera.target)}});
     return {{"title", scene.title},
             {"path", file.string()},
@@ -105,13 +109,15 @@ json infoJson(const Scene& scene, const std::filesystem::path& file, const Scene
             {"cameras", std::move(cameras)},
             {"animated", scene.isAnimated()},
             {"duration_s", scene.duration()},
-            {"bounds", bounds.empty() ? json() : json{{"min", vectorJson(bounds.lower)}, {"max", vectorJson(bounds.upper)}}},
+            {"bounds",
+             bounds.empty() ? json() : json{{"min", vectorJson(bounds.lower)}, {"max", vectorJson(bounds.upper)}}},
             {"memory_bytes", scene.byteCount()},
-            {"memory", {{"geometry_bytes", memory.geometry},
-                        {"texture_bytes", memory.textures},
-                        {"acceleration_bytes", memory.acceleration},
-                        {"sum_bytes", memory.sum()},
-                        {"peak_to_sum", memory.peakToSum()}}},
+            {"memory",
+             {{"geometry_bytes", memory.geometry},
+              {"texture_bytes", memory.textures},
+              {"acceleration_bytes", memory.acceleration},
+              {"sum_bytes", memory.sum()},
+              {"peak_to_sum", memory.peakToSum()}}},
             {"peak_memory_bytes", memory.peak},
             {"warnings", log.warnings()}};
 }
@@ -139,18 +145,22 @@ std::string choicesText(const json& things) {
 }
 
 void printInfo(const json& info, const Scene& scene, const SceneMemory& memory) {
-    const auto line = [](const char* name, const std::string& text) { std::puts(fmt::format("{:<12}{}", name, text).c_str()); };
+    const auto line = [](const char* name, const std::string& text) {
+        std::puts(fmt::format("{:<12}{}", name, text).c_str());
+    };
     line("scene", info["title"].get<std::string>().empty() ? "(untitled)" : info["title"].get<std::string>());
     line("file", info["path"].get<std::string>());
-    line("geometry", fmt::format("{} triangles in {} instances of {} meshes", scene.triangleCount(), scene.instances.size(),
-                                 meshCount(scene)));
+    line("geometry", fmt::format("{} triangles in {} instances of {} meshes", scene.triangleCount(),
+                                 scene.instances.size(), meshCount(scene)));
     if (info["scenes"].size() > 1)
-        line("scenes", fmt::format("{}: {}; --set scene.index=N shows another", info["scenes"].size(), choicesText(info["scenes"])));
+        line("scenes", fmt::format("{}: {}; --set scene.index=N shows another", info["scenes"].size(),
+                                   choicesText(info["scenes"])));
     if (!info["variants"].empty())
         line("variants", fmt::format("{}: {}; --set scene.variant=NAME shows one", info["variants"].size(),
                                      choicesText(info["variants"])));
     line("materials", fmt::format("{}: {}", info["materials"].size(), someOf(info["materials"])));
-    std::string lights = fmt::format("{}{}{}", scene.lights.size(), scene.lights.empty() ? "" : ": ", someOf(info["lights"]));
+    std::string lights =
+        fmt::format("{}{}{}", scene.lights.size(), scene.lights.empty() ? "" : ": ", someOf(info["lights"]));
     if (const int64_t emitting = emittingMaterials(scene)) lights += fmt::format("; {} emitting materials", emitting);
     if (scene.environment.visible())
         lights += "; sky" + (scene.environment.file.empty() ? std::string() : " " + scene.environment.file);
@@ -159,12 +169,14 @@ void printInfo(const json& info, const Scene& scene, const SceneMemory& memory) 
     line("animation", scene.isAnimated() ? fmt::format("{:g} s", scene.duration()) : "none");
     const Bounds3 bounds = scene.restBounds();
     if (!bounds.empty())
-        line("bounds", fmt::format("{:.3g} x {:.3g} x {:.3g} m, from ({:.3g}, {:.3g}, {:.3g}) to ({:.3g}, {:.3g}, {:.3g})",
-                                   bounds.size().x, bounds.size().y, bounds.size().z, bounds.lower.x, bounds.lower.y,
-                                   bounds.lower.z, bounds.upper.x, bounds.upper.y, bounds.upper.z));
-    line("memory", fmt::format("{}: geometry {}, textures {}, acceleration structure and lights {}; peak {}, {:.2f} of it",
-                               formatBytes(memory.sum()), formatBytes(memory.geometry), formatBytes(memory.textures),
-                               formatBytes(memory.acceleration), formatBytes(memory.peak), memory.peakToSum()));
+        line("bounds",
+             fmt::format("{:.3g} x {:.3g} x {:.3g} m, from ({:.3g}, {:.3g}, {:.3g}) to ({:.3g}, {:.3g}, {:.3g})",
+                         bounds.size().x, bounds.size().y, bounds.size().z, bounds.lower.x, bounds.lower.y,
+                         bounds.lower.z, bounds.upper.x, bounds.upper.y, bounds.upper.z));
+    line("memory",
+         fmt::format("{}: geometry {}, textures {}, acceleration structure and lights {}; peak {}, {:.2f} of it",
+                     formatBytes(memory.sum()), formatBytes(memory.geometry), formatBytes(memory.textures),
+                     formatBytes(memory.acceleration), formatBytes(memory.peak), memory.peakToSum()));
     line("warnings", info["warnings"].empty() ? "none" : std::to_string(info["warnings"].size()));
     for (const json& warning : info["warnings"]) std::puts(("  " + warning.get<std::string>()).c_str());
 }
@@ -189,14 +201,19 @@ void printChecks(const std::vector<FrameCheck>& checks) {
     for (const FrameCheck& frame : checks) {
         std::puts(fmt::format("{:<12}{}", fmt::format("check {}", frame.frame), frame.what).c_str());
         for (const ContractFinding& finding : frame.findings)
-            std::puts(fmt::format("  {:<8}{}", !finding.holds() ? "BROKEN" : finding.checked > 0 ? "good" : "-", finding.text()).c_str());
+            std::puts(fmt::format("  {:<8}{}",
+                                  !finding.holds()      ? "BROKEN"
+                                  : finding.checked > 0 ? "good"
+                                                        : "-",
+                                  finding.text())
+                          .c_str());
     }
 }
 
 }  // namespace
 
-int runInfo(const SceneOptions& options, bool check, const std::filesystem::path& writeCameraPath, const MachineOptions& machine, MessageLog& log,
-            std::stop_token stop) {
+int runInfo(const SceneOptions& options, bool check, const std::filesystem::path& writeCameraPath,
+            const MachineOptions& machine, MessageLog& log, std::stop_token stop) {
     const std::filesystem::path file = findScene(options.scene);
     const auto pollStop = [&] {
         if (stop.stop_requested()) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});

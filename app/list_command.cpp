@@ -54,7 +54,8 @@ void listStudyTable(const MachineOptions& machine) {
     json all = json::array();
     std::vector<Row> rows;
     for (const StudyListing& study : listStudies()) {
-        all.push_back({{"id", study.name}, {"title", study.title}, {"path", study.path.string()}, {"presets", study.presets}});
+        all.push_back(
+            {{"id", study.name}, {"title", study.title}, {"path", study.path.string()}, {"presets", study.presets}});
         std::string presets;
         for (const std::string& preset : study.presets) presets += (presets.empty() ? "" : ", ") + preset;
         rows.push_back({study.name, presets.empty() ? "-" : presets, study.title});
@@ -100,7 +101,8 @@ void listMetrics(const MachineOptions& machine) {
         rows.push_back({metric.id, metric.range, higher ? "higher" : "lower", metric.symmetric ? "yes" : "no", of,
                         metric.source, fmt::format("{}: {}", metric.title, metric.definition)});
     };
-    for (const Metric& metric : metricCatalog()) add(metric, metric.higherIsBetter, metric.mapColours != nullptr, "images");
+    for (const Metric& metric : metricCatalog())
+        add(metric, metric.higherIsBetter, metric.mapColours != nullptr, "images");
     for (const SequenceMetric& metric : sequenceMetricCatalog()) add(metric, false, true, "frames");
     print(machine, all, rows);
 }

@@ -80,7 +80,8 @@ int runCommand(const CommandLine& line) {
 void requireWholeOutput() {
     const bool flushed = std::fflush(stdout) == 0;
     const std::string reason = flushed ? "" : std::string(" (") + std::strerror(errno) + ")";
-    if (!flushed || std::ferror(stdout)) throw Error(ErrorKind::Resources, {"standard output could not be written" + reason, "", "", ""});
+    if (!flushed || std::ferror(stdout))
+        throw Error(ErrorKind::Resources, {"standard output could not be written" + reason, "", "", ""});
 }
 
 }  // namespace

@@ -44,7 +44,8 @@ int runMerge(const MergeCommand& options, const MachineOptions& machine) {
         result["error"] = std::isfinite(reference.error) ? nlohmann::json(reference.error) : nlohmann::json();
     }
     if (machine.json) std::puts(jsonText(result, 2).c_str());
-    if (!machine.quiet) std::fputs(fmt::format("Wrote {}: samples {}..{}\n", options.out, range.begin, range.end).c_str(), stderr);
+    if (!machine.quiet)
+        std::fputs(fmt::format("Wrote {}: samples {}..{}\n", options.out, range.begin, range.end).c_str(), stderr);
     return 0;
 }
 

@@ -38,7 +38,8 @@ int run(int argc, char** argv, MpiTeam& team, std::stop_token stop) {
             return 0;
         }
         if (line.command != Command::Reference)
-            throwUsage({"only `reference` runs as several processes", "", "mpirun -n N lumiscope-mpi reference SCENE ...", ""});
+            throwUsage({"only `reference` runs as several processes", "",
+                        "mpirun -n N lumiscope-mpi reference SCENE ...", ""});
         applyMachine(line.machine);
         return team.leads() ? runLead(line, team, stop) : runOther(line, team, stop);
     } catch (const Error& error) {

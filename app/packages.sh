@@ -12,7 +12,7 @@ build_packages=(
 )
 test_packages=(
     python3 python3-xlib python3-jsonschema xvfb xauth xdotool x11-utils imagemagick git chromium
-    embree-tools
+    embree-tools clang-format
     libopenmpi-dev openmpi-bin
 )
 

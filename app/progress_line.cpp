@@ -15,7 +15,8 @@ ProgressLine::ProgressLine(bool shown, std::function<std::string()> text) {
         std::mutex mutex;
         std::condition_variable_any wake;
         std::unique_lock lock(mutex);
-        while (!wake.wait_for(lock, stop, std::chrono::milliseconds(200), [] { return false; }) && !stop.stop_requested())
+        while (!wake.wait_for(lock, stop, std::chrono::milliseconds(200), [] { return false; }) &&
+               !stop.stop_requested())
             std::fputs(fmt::format("\r\033[K{}", text()).c_str(), stderr);
         std::fputs("\r\033[K", stderr);
     });

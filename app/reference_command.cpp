@@ -49,11 +49,13 @@ public:
             text += "spp";
             if (progress_.error > 0) {
                 text += fmt::format(", error {:.3g} of {:.3g}", progress_.error, wantedError_);
-                target = samples * std::pow(progress_.error / wantedError_, 2);  // it falls with the root of the samples
+                // it falls with the root of the samples
+                target = samples * std::pow(progress_.error / wantedError_, 2);
             }
         }
         const double traced = samples - static_cast<double>(progress_.resumed);
-        if (traced > 0 && target > samples) text += "  " + formatDuration(seconds / traced * (target - samples)) + " left";
+        if (traced > 0 && target > samples)
+            text += "  " + formatDuration(seconds / traced * (target - samples)) + " left";
         return text;
     }
 
@@ -69,8 +71,11 @@ private:
 class ReferenceJob {
 public:
     ReferenceJob(const ReferenceCommand& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop)
-        : options_(options), file_(findScene(options.scene.scene)), scene_(openScene(file_, options.scene, log, stop)),
-          document_(makeDocument(scene_, options.scene, log)), path_(readCameraPathOf(options.scene)) {
+        : options_(options),
+          file_(findScene(options.scene.scene)),
+          scene_(openScene(file_, options.scene, log, stop)),
+          document_(makeDocument(scene_, options.scene, log)),
+          path_(readCameraPathOf(options.scene)) {
         printMessages(log, machine);
         document_.set("view.0.module", std::string("accumulate"));
         const auto sppGiven = std::any_of(options.scene.values.begin(), options.scene.values.end(),
@@ -137,13 +142,14 @@ std::shared_ptr<const Signals> traceLayers(const ReferenceSpec& spec, const Docu
 
 class ReferenceRenderer {
 public:
-    ReferenceRenderer(const ReferenceCommand& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop,
-                      BlockTeam* team)
+    ReferenceRenderer(const ReferenceCommand& options, const MachineOptions& machine, MessageLog& log,
+                      std::stop_token stop, BlockTeam* team)
         : options_(options), machine_(machine), log_(log), stop_(stop), team_(team), job_(options, machine, log, stop) {
         checkNames();
         const BufferSelection selection = BufferSelection::parse(options.buffers, "accumulate", "--buffers");
         if (!selection.taps.empty() && !(selection.taps == BufferSelection::all("accumulate").taps))
-            throwUsage({"a reference has no taps of modules", "--buffers", "signals from `lumiscope list buffers`", ""});
+            throwUsage(
+                {"a reference has no taps of modules", "--buffers", "signals from `lumiscope list buffers`", ""});
         layers_ = selection.signals;
     }
 
@@ -168,7 +174,8 @@ private:
             if (names_.size() > 1) throwUsage({"a part is one file", "--out", "one name", ""});
             const std::string extension = lowerExtension(names_[0]);
             if (extension == ".exr" || extension == ".png" || extension == ".mp4")
-                throwUsage({"a part holds sums for `lumiscope merge`, no image", names_[0], "a name like part.lumiref", ""});
+                throwUsage(
+                    {"a part holds sums for `lumiscope merge`, no image", names_[0], "a name like part.lumiref", ""});
             return requireWritable(numberedName(names_[0], options_.frames.begin));
         }
         const bool many = options_.frames.end - options_.frames.begin > 1;
@@ -201,15 +208,16 @@ private:
         return options;
     }
     bool showsProgress() const {
-        return !machine_.quiet && (options_.progress == Progress::Always ||
-                                   (options_.progress == Progress::Auto && stderrIsTerminal()));
+        return !machine_.quiet &&
+               (options_.progress == Progress::Always || (options_.progress == Progress::Auto && stderrIsTerminal()));
     }
 
     void converge(int64_t number, const Document& document) {
         const ReferenceSpec spec = referenceSpec(document);
         const bool many = options_.frames.end - options_.frames.begin > 1;
-        ReferenceStatus status(many ? fmt::format("frame {} of {}..{}  ", number, options_.frames.begin, options_.frames.end) : "",
-                               options_.error);
+        ReferenceStatus status(
+            many ? fmt::format("frame {} of {}..{}  ", number, options_.frames.begin, options_.frames.end) : "",
+            options_.error);
         Reference reference;
         {
             const ProgressLine line(showsProgress(), [&status] { return status.text(); });
@@ -229,8 +237,11 @@ private:
                       {"cached", reference.cached},
                       {"cache_file", reference.file.string()}};
         if (!machine_.quiet && !machine_.json)
-            std::fputs(fmt::format("{}{} samples a pixel{}{}\n", many ? fmt::format("frame {}: ", number) : "", reference.samples,
-                                   std::isfinite(reference.error) ? fmt::format(", relative standard error {:.3g}", reference.error) : "",
+            std::fputs(fmt::format("{}{} samples a pixel{}{}\n", many ? fmt::format("frame {}: ", number) : "",
+                                   reference.samples,
+                                   std::isfinite(reference.error)
+                                       ? fmt::format(", relative standard error {:.3g}", reference.error)
+                                       : "",
                                    reference.cached ? ", from the cache" : "")
                            .c_str(),
                        stderr);
@@ -245,7 +256,8 @@ private:
         const ProgressLine line(showsProgress(), [&status] { return status.text(); });
         makeReferencePart(referenceSpec(document), range, name, picture.text(), referenceOptions(status));
         files_.push_back(name);
-        entries_.push_back({{"frame", options_.frames.begin}, {"first_sample", range.begin}, {"samples", range.count()}});
+        entries_.push_back(
+            {{"frame", options_.frames.begin}, {"first_sample", range.begin}, {"samples", range.count()}});
     }
 
     void print() const {
@@ -257,7 +269,8 @@ private:
             std::puts(jsonText(result, 2).c_str());
         }
         if (machine_.quiet) return;
-        for (size_t i = 0; i < std::min<size_t>(files_.size(), 4); ++i) std::fputs(("Wrote " + files_[i] + "\n").c_str(), stderr);
+        for (size_t i = 0; i < std::min<size_t>(files_.size(), 4); ++i)
+            std::fputs(("Wrote " + files_[i] + "\n").c_str(), stderr);
         if (files_.size() > 4) std::fputs(fmt::format("... and {} more files\n", files_.size() - 4).c_str(), stderr);
     }
 
@@ -279,8 +292,8 @@ int runReference(const ReferenceCommand& options, const MachineOptions& machine,
     return ReferenceRenderer(options, machine, log, stop, team).run();
 }
 
-int serveReference(const ReferenceCommand& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop,
-                   const std::function<bool(BlockTracer&)>& serve) {
+int serveReference(const ReferenceCommand& options, const MachineOptions& machine, MessageLog& log,
+                   std::stop_token stop, const std::function<bool(BlockTracer&)>& serve) {
     MachineOptions silent = machine;
     silent.quiet = true;  // the first process tells what there is to tell
     ReferenceJob job(options, silent, log, stop);

@@ -13,9 +13,10 @@ namespace lumi {
 int runReference(const ReferenceCommand& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop,
                  BlockTeam* team = nullptr);
 
-/// Traces for another process's runReference() of the same options: serve(tracer) for each image, until it returns false.
-int serveReference(const ReferenceCommand& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop,
-                   const std::function<bool(BlockTracer&)>& serve);
+/// Traces for another process's runReference() of the same options: serve(tracer) for each image, until it returns
+/// false.
+int serveReference(const ReferenceCommand& options, const MachineOptions& machine, MessageLog& log,
+                   std::stop_token stop, const std::function<bool(BlockTracer&)>& serve);
 
 /// Adds parts up, and writes the image (.exr, .png) or a larger part.
 int runMerge(const MergeCommand& options, const MachineOptions& machine);

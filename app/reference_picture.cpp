@@ -87,7 +87,8 @@ ReferencePicture ReferencePicture::parse(const std::string& text, const std::str
     } catch (const json::exception&) {
     } catch (const Error&) {
     }
-    throwBadInput({"does not tell what its image looks like", where, "a part that `lumiscope reference --samples` wrote", ""});
+    throwBadInput(
+        {"does not tell what its image looks like", where, "a part that `lumiscope reference --samples` wrote", ""});
 }
 
 std::string ReferencePicture::stateOf(uint64_t samples) const {

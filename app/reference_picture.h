@@ -15,10 +15,11 @@ struct ReferencePicture {
     CameraPose camera;
     ViewSettings view;
     bool half = false;
-    std::string state;     ///< StateLog::json() of one frame, without the number of samples
-    int initialSpp = 1;    ///< of the scene: a state does not tell what it would be anyway
+    std::string state;   ///< StateLog::json() of one frame, without the number of samples
+    int initialSpp = 1;  ///< of the scene: a state does not tell what it would be anyway
 
-    static ReferencePicture of(const Document& document, const SceneReference& scene, const std::string& buffers, bool half);
+    static ReferencePicture of(const Document& document, const SceneReference& scene, const std::string& buffers,
+                               bool half);
     std::string text() const;
     /// Throws Error(BadInput) headed by `where`.
     static ReferencePicture parse(const std::string& text, const std::string& where);

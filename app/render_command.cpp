@@ -57,7 +57,8 @@ public:
             if (!options_.stereo) break;
             MessageLog toldAlready;  // with the first eye
             const SceneOptions seen = seenBy(eye);
-            sequences.push_back(sequenceOf(makeDocument(scene, seen, sequences.empty() ? log_ : toldAlready), file, eye));
+            sequences.push_back(
+                sequenceOf(makeDocument(scene, seen, sequences.empty() ? log_ : toldAlready), file, eye));
         }
         printMessages(log_, machine_);
         for (const Sequence& sequence : sequences) drawSequence(sequence, {options_.scene.scene, scene->contentDigest});
@@ -74,8 +75,8 @@ public:
         load.variant = replay.start.value("scene.variant", "");
         auto scene = loadScene(file, log_, load);
         if (scene->contentDigest != replay.scene.digest)
-            throwBadInput({"the scene changed since the image was made", file.string(), "content " + replay.scene.digest,
-                           scene->contentDigest});
+            throwBadInput({"the scene changed since the image was made", file.string(),
+                           "content " + replay.scene.digest, scene->contentDigest});
         Document document(scene);
         const std::string where = options_.replay.string();
         applyState(document, replay.start);
@@ -108,7 +109,8 @@ private:
         const std::string eye = sequence.eye.empty() ? "" : "." + sequence.eye;
         std::vector<std::string> names = options_.out;
         for (std::string& name : names)
-            if (!eye.empty()) name = fs::path(name).replace_extension(eye + fs::path(name).extension().string()).string();
+            if (!eye.empty())
+                name = fs::path(name).replace_extension(eye + fs::path(name).extension().string()).string();
         if (names.empty()) names.push_back(defaultOutput(file, instance, eye));
         sequence.outputs = std::make_shared<RenderOutputs>(names, choice_, sequence.document.render().fps, log_);
     }
@@ -168,7 +170,9 @@ private:
             // What is there is trusted when the last of it comes out again as it is.
             const bool check = plan.kept > 0 && number == range.begin + plan.kept - 1 && number < plan.write;
             draw(documentAt(number), number, number == plan.from,
-                 number >= plan.write ? Fate::Written : check ? Fate::Checked : Fate::Dropped);
+                 number >= plan.write ? Fate::Written
+                 : check              ? Fate::Checked
+                                      : Fate::Dropped);
         }
         endSequence(range.begin, range.end);
     }
@@ -203,8 +207,9 @@ private:
             const double fraction = (static_cast<double>(request.frame - first_) + part) / frames;
             const double seconds = sequenceTimer_.elapsedMs() / 1000;
             const double left = fraction > 0.01 ? seconds / fraction - seconds : 0;
-            return fmt::format("{}frame {} of {}..{}  {:3.0f}%  {} left", eye_.empty() ? "" : eye_ + " eye, ", request.frame,
-                               first_, last_ + 1, 100 * fraction, fraction > 0.01 ? formatDuration(left) : "?");
+            return fmt::format("{}frame {} of {}..{}  {:3.0f}%  {} left", eye_.empty() ? "" : eye_ + " eye, ",
+                               request.frame, first_, last_ + 1, 100 * fraction,
+                               fraction > 0.01 ? formatDuration(left) : "?");
         });
         return engine_->advance(request, stop_, stop_);
     }
@@ -247,8 +252,10 @@ private:
     void useIsa(const std::string& name) const {
         const Isa isa = parseIsa(name);
         if (isa <= detectIsa()) setIsa(isa);
-        else log_.warning(fmt::format("the image was made with instruction set {}, this machine has {}: last bits may differ",
-                                      name, isaName(detectIsa())));
+        else
+            log_.warning(
+                fmt::format("the image was made with instruction set {}, this machine has {}: last bits may differ",
+                            name, isaName(detectIsa())));
     }
 
     const RenderOptions& options_;

@@ -12,13 +12,13 @@
 namespace lumi {
 
 /// The files of one `render`: those with a frame number are written each frame, the others get the last frame. A frame
-/// that is there already with the same state is left alone; one with another state is never overwritten. The frames of a
-/// video are kept as PNGs in `<video>.frames` until it is complete, so that it goes on after an interruption. Nothing is
-/// left half written.
+/// that is there already with the same state is left alone; one with another state is never overwritten. The frames of
+/// a video are kept as PNGs in `<video>.frames` until it is complete, so that it goes on after an interruption. Nothing
+/// is left half written.
 class RenderOutputs {
 public:
-    /// Checks every name before the first ray, and that its folder, which is created, can be written. Without an ffmpeg program
-    /// a video becomes numbered PNGs, and a warning. Throws Error(Usage), Error(Resources).
+    /// Checks every name before the first ray, and that its folder, which is created, can be written. Without an ffmpeg
+    /// program a video becomes numbered PNGs, and a warning. Throws Error(Usage), Error(Resources).
     RenderOutputs(const std::vector<std::string>& names, const OutputChoice& choice, double fps, MessageLog& log);
 
     /// Does the frame go into an EXR, so that its layers have to be there?

@@ -58,7 +58,8 @@ void removeFrameLeftovers(const fs::path& folder) {
         if (image.extension() != ".png") return false;
         if (stem.extension() != ".check") return part && isNumber(stem.string());
         const fs::path checked = stem.stem();  // <frame>.<process>, see checkName()
-        return isNumber(checked.stem().string()) && checked.has_extension() && hasEnded(checked.extension().string().substr(1));
+        return isNumber(checked.stem().string()) && checked.has_extension() &&
+               hasEnded(checked.extension().string().substr(1));
     });
 }
 
@@ -80,10 +81,11 @@ std::string numberedName(const std::string& pattern, int64_t number, bool* hasNu
         } else if (end < pattern.size() && pattern[end] == 'd' && digits.size() <= 2) {
             const int width = digits.empty() ? 0 : std::stoi(digits);
             name += digits.empty() || digits[0] != '0' ? fmt::format("{:{}}", number, width)
-                                                        : fmt::format("{:0{}}", number, width);
+                                                       : fmt::format("{:0{}}", number, width);
             if (hasNumber) *hasNumber = true;
         } else {
-            throwUsage({"not understood after %", pattern, "%d or %04d for the frame number, %% for a percent sign", ""});
+            throwUsage(
+                {"not understood after %", pattern, "%d or %04d for the frame number, %% for a percent sign", ""});
         }
         i = end;
     }
@@ -186,7 +188,8 @@ void RenderOutputs::finishVideo(const Output& output, int64_t begin, int64_t end
         if (!pipe) return;
         pipe->finish();
     } catch (const Error&) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));  // an interrupt of the terminal ends ffmpeg, too, and maybe first
+        // an interrupt of the terminal ends ffmpeg, too, and maybe first
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
         requireGoingOn();
         throw;
     }

@@ -11,7 +11,8 @@ namespace {
 /// The text that the state of a frame has when its history began at frame `start`.
 class ExpectedStates {
 public:
-    ExpectedStates(const SceneReference& scene, const OutputChoice& choice, const std::function<Document(int64_t)>& documentAt)
+    ExpectedStates(const SceneReference& scene, const OutputChoice& choice,
+                   const std::function<Document(int64_t)>& documentAt)
         : scene_(scene), output_(choice.json()), documentAt_(documentAt) {}
 
     std::string of(int64_t start, int64_t frame) {
@@ -49,7 +50,8 @@ ResumePlan planResume(const RenderOutputs& outputs, const SceneReference& scene,
         for (const std::string& name : names) {
             const std::string text = stateTextOf(name);
             start = parseReplay(text, name).first;
-            if (start < first || start > frame || text != expected.of(start, frame)) RenderOutputs::throwOtherState(name);
+            if (start < first || start > frame || text != expected.of(start, frame))
+                RenderOutputs::throwOtherState(name);
         }
     }
     plan.kept = frame - begin;

@@ -47,11 +47,13 @@ std::string presetOf(const fs::path& file, const std::string& asked) {
 
 }  // namespace
 
-int runStudyCommand(const StudyCommandOptions& options, const MachineOptions& machine, MessageLog& log, std::stop_token stop) {
+int runStudyCommand(const StudyCommandOptions& options, const MachineOptions& machine, MessageLog& log,
+                    std::stop_token stop) {
     const fs::path file = findStudy(options.file);
     const Study study = loadStudy(file, presetOf(file, options.preset));
     StudyOptions run;
-    run.out = options.out.empty() ? fs::path(study.name + (study.preset.empty() ? "" : "-" + study.preset)) : options.out;
+    run.out =
+        options.out.empty() ? fs::path(study.name + (study.preset.empty() ? "" : "-" + study.preset)) : options.out;
     run.referenceCache = defaultReferenceCache();
     run.stop = stop;
     std::mutex mutex;
@@ -83,9 +85,11 @@ int runStudyCommand(const StudyCommandOptions& options, const MachineOptions& ma
             if (path.parent_path() == run.out) std::fputs(fmt::format("Wrote {}\n", path.string()).c_str(), stderr);
             else ++folders[path.parent_path().string()];
         }
-        for (const auto& [folder, count] : folders) std::fputs(fmt::format("Wrote {} files in {}\n", count, folder).c_str(), stderr);
+        for (const auto& [folder, count] : folders)
+            std::fputs(fmt::format("Wrote {} files in {}\n", count, folder).c_str(), stderr);
     }
-    const bool held = std::all_of(outcome.checks.begin(), outcome.checks.end(), [](const StudyCheckResult& result) { return result.asClaimed(); });
+    const bool held = std::all_of(outcome.checks.begin(), outcome.checks.end(),
+                                  [](const StudyCheckResult& result) { return result.asClaimed(); });
     return held ? 0 : static_cast<int>(ErrorKind::CheckFailed);
 }
 

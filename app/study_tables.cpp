@@ -17,7 +17,9 @@ std::string shownDifference(const Interval& interval) {
     return (interval.mean > 0 ? "+" : "") + shown(interval) + (interval.excludesZero() ? " *" : "  ");
 }
 
-std::string sceneName(const Study& study, size_t scene) { return scene == kAllScenes ? "all scenes" : study.scenes[scene].name; }
+std::string sceneName(const Study& study, size_t scene) {
+    return scene == kAllScenes ? "all scenes" : study.scenes[scene].name;
+}
 
 std::string rankText(const StudySummaries& all, const StudySummary& summary) {
     for (const StudyRanking& ranking : all.rankings)
@@ -60,14 +62,16 @@ private:
 
 const StudySummary* find(const StudySummaries& all, size_t scene, int spp, size_t method, const std::string& metric) {
     for (const StudySummary& summary : all.metrics)
-        if (summary.scene == scene && summary.spp == spp && summary.method == method && summary.metric == metric) return &summary;
+        if (summary.scene == scene && summary.spp == spp && summary.method == method && summary.metric == metric)
+            return &summary;
     return nullptr;
 }
 
 void printResults(const Study& study, const StudyOutcome& outcome) {
     std::vector<std::pair<size_t, int>> places;
     for (const StudySummary& summary : outcome.summaries.metrics)
-        if (places.empty() || places.back() != std::pair(summary.scene, summary.spp)) places.emplace_back(summary.scene, summary.spp);
+        if (places.empty() || places.back() != std::pair(summary.scene, summary.spp))
+            places.emplace_back(summary.scene, summary.spp);
     for (const auto& [scene, spp] : places) {
         TextTable table;
         std::vector<std::string> head{fmt::format("{}, {} spp", sceneName(study, scene), spp)};
@@ -80,8 +84,9 @@ void printResults(const Study& study, const StudyOutcome& outcome) {
             for (const std::string& metric : allMetrics(study)) {
                 const StudySummary* summary = find(outcome.summaries, scene, spp, method, metric);
                 any = any || summary;
-                row.push_back(!summary ? "-" : shown(summary->interval) + rankText(outcome.summaries, *summary) +
-                                                   (summary->missing ? fmt::format(" ({} without)", summary->missing) : ""));
+                row.push_back(!summary ? "-"
+                                       : shown(summary->interval) + rankText(outcome.summaries, *summary) +
+                                             (summary->missing ? fmt::format(" ({} without)", summary->missing) : ""));
             }
             if (any) table.add(std::move(row));
         }
@@ -89,18 +94,22 @@ void printResults(const Study& study, const StudyOutcome& outcome) {
         table.print();
     }
     if (study.seeds.size() > 1)
-        std::puts("\n[place] or [best-worst place that the intervals allow]: methods that share places are not told apart.");
+        std::puts(
+            "\n[place] or [best-worst place that the intervals allow]: methods that share places are not told apart.");
 }
 
 void printNonFinite(const Study& study, const StudyOutcome& outcome) {
     for (const StudyNonFinite& found : outcome.summaries.nonFinite)
-        std::puts(fmt::format("{}, {} spp, {}: {} pixels that are not finite, in {} of {} images; they count in no metric",
-                              study.scenes[found.scene].name, found.spp, outcome.plan.methods[found.method].name, found.pixels,
-                              found.images, found.allImages).c_str());
+        std::puts(
+            fmt::format("{}, {} spp, {}: {} pixels that are not finite, in {} of {} images; they count in no metric",
+                        study.scenes[found.scene].name, found.spp, outcome.plan.methods[found.method].name,
+                        found.pixels, found.images, found.allImages)
+                .c_str());
     for (const StudyReferenceNote& note : outcome.records.references)
         if (note.nonFinitePixels > 0)
-            std::puts(fmt::format("{}, reference of frame {}: {} pixels that are not finite", study.scenes[note.scene].name, note.frame,
-                                  note.nonFinitePixels).c_str());
+            std::puts(fmt::format("{}, reference of frame {}: {} pixels that are not finite",
+                                  study.scenes[note.scene].name, note.frame, note.nonFinitePixels)
+                          .c_str());
 }
 
 void printStages(const Study& study, const StudyOutcome& outcome) {
@@ -115,10 +124,12 @@ void printStages(const Study& study, const StudyOutcome& outcome) {
         for (size_t method = 0; method < outcome.plan.methods.size(); ++method) {
             std::vector<std::string> row{"  " + outcome.plan.methods[method].stage};
             for (const StudyStageEffect& effect : outcome.summaries.stages)
-                if (effect.scene == scene && effect.spp == spp && effect.without == method) row.push_back(shownDifference(effect.difference));
+                if (effect.scene == scene && effect.spp == spp && effect.without == method)
+                    row.push_back(shownDifference(effect.difference));
             if (row.size() == 1) continue;
             for (const StudyStageTime& time : outcome.times.stages)
-                if (time.scene == scene && time.spp == spp && time.without == method) row.push_back(shownDifference(time.differenceMs));
+                if (time.scene == scene && time.spp == spp && time.without == method)
+                    row.push_back(shownDifference(time.differenceMs));
             table.add(std::move(row));
         }
         std::puts("");
@@ -129,8 +140,8 @@ void printStages(const Study& study, const StudyOutcome& outcome) {
 
 void printPairs(const Study& study, const StudyOutcome& outcome) {
     TextTable table;
-    table.add({"equal time, equal value", "spp", "metric", "ms a frame", "value", "against", "at equal time", "difference  ",
-               "ms for equal value", "times as long"});
+    table.add({"equal time, equal value", "spp", "metric", "ms a frame", "value", "against", "at equal time",
+               "difference  ", "ms for equal value", "times as long"});
     for (const StudyEqual& equal : outcome.times.pairs) {
         const auto reached = [&](const Interval& interval) {
             if (interval.count == 0) return std::string("out of range");
@@ -138,10 +149,10 @@ void printPairs(const Study& study, const StudyOutcome& outcome) {
             return shown(interval) + (all ? "" : fmt::format(" ({} of {} seeds)", interval.count, study.seeds.size()));
         };
         const bool timed = equal.otherAtEqualTime.count > 0, valued = equal.otherMsAtEqualValue.count > 0;
-        table.add({fmt::format("  {}, {}", study.scenes[equal.scene].name, outcome.plan.methods[equal.method].name), std::to_string(equal.spp),
-                   equal.metric, shown(equal.ms), shown(equal.value), equal.against, reached(equal.otherAtEqualTime),
-                   timed ? shownDifference(equal.differenceAtEqualTime) : "-  ", reached(equal.otherMsAtEqualValue),
-                   valued ? shown(equal.timesAsLong) : "-"});
+        table.add({fmt::format("  {}, {}", study.scenes[equal.scene].name, outcome.plan.methods[equal.method].name),
+                   std::to_string(equal.spp), equal.metric, shown(equal.ms), shown(equal.value), equal.against,
+                   reached(equal.otherAtEqualTime), timed ? shownDifference(equal.differenceAtEqualTime) : "-  ",
+                   reached(equal.otherMsAtEqualValue), valued ? shown(equal.timesAsLong) : "-"});
     }
     if (table.empty()) return;
     std::puts("");
@@ -163,7 +174,8 @@ void printTimes(const Study& study, const StudyOutcome& outcome) {
         table.add(std::move(head));
         for (const StudyMeanTime& time : outcome.times.methods) {
             if (time.scene != scene) continue;
-            std::vector<std::string> row{"  " + outcome.plan.methods[time.method].name, std::to_string(time.spp), shown(time.frameMs), shown(time.buildMs), shown(time.traceMs)};
+            std::vector<std::string> row{"  " + outcome.plan.methods[time.method].name, std::to_string(time.spp),
+                                         shown(time.frameMs), shown(time.buildMs), shown(time.traceMs)};
             for (const std::string& stage : stages) {
                 const auto found = time.stagesMs.find(stage);
                 row.push_back(found == time.stagesMs.end() ? "-" : shown(found->second));
@@ -183,8 +195,9 @@ void printChecks(const Study& study, const StudyOutcome& outcome) {
     TextTable table;
     table.add({"claims", "scene", "spp", "value", "against", "ratio", "verdict"});
     for (const StudyCheckResult& result : outcome.checks)
-        table.add({"  " + claimText(study, study.checks[result.check]), sceneName(study, result.scene), std::to_string(result.spp), shown(result.value),
-                   result.against.empty() ? "-" : result.against, result.against.empty() ? "-" : shown(result.ratio), verdictText(result.verdict)});
+        table.add({"  " + claimText(study, study.checks[result.check]), sceneName(study, result.scene),
+                   std::to_string(result.spp), shown(result.value), result.against.empty() ? "-" : result.against,
+                   result.against.empty() ? "-" : shown(result.ratio), verdictText(result.verdict)});
     if (table.empty()) return;
     std::puts("");
     table.print();

@@ -53,7 +53,8 @@ nlohmann::json lineageJson(const AppState& state) {
         one["pixel"] = {lineage.pixel.x, lineage.pixel.y};
         one["rows"] = nlohmann::json::array();
         for (const Lineage::Row& row : lineage.rows)
-            one["rows"].push_back({{"stage", row.stage}, {"at", {row.at.x, row.at.y}}, {"weight", row.weight}, {"verdict", row.verdict}});
+            one["rows"].push_back(
+                {{"stage", row.stage}, {"at", {row.at.x, row.at.y}}, {"weight", row.weight}, {"verdict", row.verdict}});
     }
     return all;
 }
@@ -205,7 +206,8 @@ void ViewDriver::waits(const ScriptLine& line) {
     } else if (line.command == "wait-metrics") {
         wait(line, [&] {
             const auto measured = state.metrics.latest();
-            return measured && state.snapshot && measured->serial == state.snapshot->serial && measured->problem.empty() &&
+            return measured && state.snapshot && measured->serial == state.snapshot->serial &&
+                   measured->problem.empty() &&
                    (state.errorMap.empty() || (!measured->panes.empty() && measured->panes[0].map));
         });
     } else if (line.command == "wait-spp") {
@@ -215,7 +217,8 @@ void ViewDriver::waits(const ScriptLine& line) {
             if (!state.snapshot || state.snapshot->preview) return false;
             const auto perFrame = static_cast<uint64_t>(state.document.number("render.spp", 1));
             const auto traced = static_cast<uint64_t>(state.snapshot->frame + 1) * perFrame;
-            return std::max(state.snapshot->accumulatedSamples, state.snapshot->accumulatedSamples ? 0 : traced) >= samples;
+            return std::max(state.snapshot->accumulatedSamples, state.snapshot->accumulatedSamples ? 0 : traced) >=
+                   samples;
         });
     } else {
         wait(line, [&] {
@@ -285,9 +288,7 @@ void ViewDriver::run(const ScriptLine& line) {
     }
 }
 
-void ViewDriver::finish() {
-    build(2);
-}
+void ViewDriver::finish() { build(2); }
 
 nlohmann::json ViewDriver::report() const {
     const AppState& state = interface_.state();

@@ -15,12 +15,16 @@ struct Known {
     int least, most;  ///< arguments; -1: any number
 };
 constexpr std::array kKnown{
-    Known{"size", 2, 2},          Known{"scale", 1, 1},         Known{"mouse", 2, 2},      Known{"hover", 1, -1},
-    Known{"press", 1, 1},         Known{"release", 1, 1},       Known{"wheel", 1, 1},      Known{"click", 1, -1},
-    Known{"double-click", 1, -1}, Known{"drag", 3, 3},          Known{"key", 1, 1},        Known{"hold", 1, 1},
-    Known{"lift", 1, 1},          Known{"text", 1, -1},         Known{"drop", 1, -1},      Known{"set", 2, -1},
-    Known{"pause", 1, 1},         Known{"wait-load", 0, 0},     Known{"wait-shown", 0, 0}, Known{"wait-frames", 1, 1},
-    Known{"wait-frame", 1, 1},     Known{"wait-signals", 0, 0}, Known{"wait-metrics", 0, 0}, Known{"wait-spp", 1, 1},      Known{"wait-message", 1, -1}, Known{"shot", 1, -1},      Known{"dump-ui", 1, -1}, Known{"dump-lineage", 1, -1},
+    Known{"size", 2, 2},          Known{"scale", 1, 1},        Known{"mouse", 2, 2},
+    Known{"hover", 1, -1},        Known{"press", 1, 1},        Known{"release", 1, 1},
+    Known{"wheel", 1, 1},         Known{"click", 1, -1},       Known{"double-click", 1, -1},
+    Known{"drag", 3, 3},          Known{"key", 1, 1},          Known{"hold", 1, 1},
+    Known{"lift", 1, 1},          Known{"text", 1, -1},        Known{"drop", 1, -1},
+    Known{"set", 2, -1},          Known{"pause", 1, 1},        Known{"wait-load", 0, 0},
+    Known{"wait-shown", 0, 0},    Known{"wait-frames", 1, 1},  Known{"wait-frame", 1, 1},
+    Known{"wait-signals", 0, 0},  Known{"wait-metrics", 0, 0}, Known{"wait-spp", 1, 1},
+    Known{"wait-message", 1, -1}, Known{"shot", 1, -1},        Known{"dump-ui", 1, -1},
+    Known{"dump-lineage", 1, -1},
 };
 
 void check(const ScriptLine& line) {

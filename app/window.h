@@ -15,9 +15,9 @@ struct TypedValue {
 
 /// What the window and its offscreen twin show when they open.
 struct StartOptions {
-    std::filesystem::path scene;  ///< a file that exists, as findScene() gives it; empty: an empty window
-    int sceneIndex = -1;          ///< glTF: which scene; -1 is the file's default
-    std::string variant;          ///< material variant by name; empty is the default
+    std::filesystem::path scene;       ///< a file that exists, as findScene() gives it; empty: an empty window
+    int sceneIndex = -1;               ///< glTF: which scene; -1 is the file's default
+    std::string variant;               ///< material variant by name; empty is the default
     std::vector<std::string> modules;  ///< instance of each pane; two open the panes side by side
     /// Parameters in the order given: `--set`, and the options that are parameters (`render.width`, ...).
     std::vector<TypedValue> set;
@@ -25,9 +25,9 @@ struct StartOptions {
 
 struct WindowOptions {
     StartOptions start;
-    Extent2 size{1280, 800};        ///< of the window, in screen coordinates
-    std::filesystem::path uiMap;    ///< if not empty: where every item of the UI is, as JSON, rewritten when it changes
-    std::filesystem::path captures; ///< folder for screenshots; empty: the current folder
+    Extent2 size{1280, 800};      ///< of the window, in screen coordinates
+    std::filesystem::path uiMap;  ///< if not empty: where every item of the UI is, as JSON, rewritten when it changes
+    std::filesystem::path captures;  ///< folder for screenshots; empty: the current folder
 };
 
 /// Opens the window and returns when the user closes it; the value is the program's exit code.

@@ -81,9 +81,7 @@ AppState::Bookmarks& AppState::bookmarks() {
     return bookmarksByScene[document.scene() ? document.scene()->path : std::string()];
 }
 
-std::string AppState::viewId(int pane, const char* name) const {
-    return "view." + std::to_string(pane) + "." + name;
-}
+std::string AppState::viewId(int pane, const char* name) const { return "view." + std::to_string(pane) + "." + name; }
 
 const PaneSnapshot* AppState::pane(int index) const {
     if (!snapshot || static_cast<size_t>(index) >= snapshot->panes.size()) return nullptr;

@@ -32,22 +32,22 @@ struct AppState {
     bool loupe = false;
     bool leftDragOrbits = true;
     float flySpeed = 1;
-    bool flying = false;  ///< by keys, in the last frame
+    bool flying = false;                           ///< by keys, in the last frame
     std::future<std::optional<Vec3>> orbitTarget;  ///< asked for: what the camera is to orbit around
     std::optional<Pixel> hovered, pinned;
     Vec2 hoveredPaneSize{1};
 
     PanelTab tab = PanelTab::View;
-    bool uiHidden = false, panelHidden = false, helpOpen = false, browserOpen = false, messagesOpen = false, signalsOpen = false,
-         bufferPickerWanted = false, modulePickerWanted = false;
+    bool uiHidden = false, panelHidden = false, helpOpen = false, browserOpen = false, messagesOpen = false,
+         signalsOpen = false, bufferPickerWanted = false, modulePickerWanted = false;
     std::string parameterSearch;
     bool checkScenes = true;  ///< the signals of each scene are checked when it opens
 
     LiveMetrics metrics;
-    int referenceTarget = 1;      ///< which of the numbers of samples that the panel offers
-    std::string referenceFile;    ///< as typed
+    int referenceTarget = 1;    ///< which of the numbers of samples that the panel offers
+    std::string referenceFile;  ///< as typed
     bool allMetrics = false, showReference = false, resumeAfterReference = false;
-    std::string errorMap;         ///< metric whose map stands in the pictures' place; empty: none
+    std::string errorMap;  ///< metric whose map stands in the pictures' place; empty: none
 
     using Bookmarks = std::array<std::optional<Camera>, 9>;
     std::map<std::string, Bookmarks> bookmarksByScene;  ///< by the scene's path
@@ -78,7 +78,9 @@ struct AppState {
     /// The error map that a pane shows; null if it shows something else.
     std::shared_ptr<const PaneMeasurement> shownMap(int pane) const;
     bool showsReference() const;
-    float sceneExposureEv() const { return document.present() ? document.document().loadedScene()->render.exposureEv : 0; }
+    float sceneExposureEv() const {
+        return document.present() ? document.document().loadedScene()->render.exposureEv : 0;
+    }
 
     /// Changes the document; what the session refuses is a message. endEdit() closes the step of undo.
     void set(const std::string& id, const ParameterValue& value);

@@ -16,9 +16,7 @@ Vec3 rotated(const Vec3& v, float angle, const Vec3& axis) {
     return Vec3(glm::rotate(Mat4(1), angle, axis) * Vec4(v, 0));
 }
 
-Vec3 rightOf(const Camera& camera) {
-    return Vec3(lookAt(camera.eye, camera.target, camera.up)[0]);
-}
+Vec3 rightOf(const Camera& camera) { return Vec3(lookAt(camera.eye, camera.target, camera.up)[0]); }
 
 /// `direction` turned by yaw around up and by pitch around right, kept off the poles.
 Vec3 turned(const Camera& camera, const Vec3& direction, float yaw, float pitch) {
@@ -39,8 +37,8 @@ Camera lookAround(Camera camera, float yaw, float pitch) {
 
 Camera flyBy(Camera camera, const Vec3& rightUpForward) {
     const Mat4 frame = lookAt(camera.eye, camera.target, camera.up);
-    const Vec3 move = Vec3(frame[0]) * rightUpForward.x + unitUp(camera) * rightUpForward.y -
-                      Vec3(frame[2]) * rightUpForward.z;
+    const Vec3 move =
+        Vec3(frame[0]) * rightUpForward.x + unitUp(camera) * rightUpForward.y - Vec3(frame[2]) * rightUpForward.z;
     camera.eye += move;
     camera.target += move;
     return camera;

@@ -80,61 +80,32 @@ void recallBookmark(AppState& state, int index) {
 }
 
 void closeTopmost(AppState& state) {
-    if (state.helpOpen)
-        state.helpOpen = false;
-    else if (state.browserOpen)
-        state.browserOpen = false;
-    else if (state.uiHidden)
-        state.uiHidden = false;
-    else if (state.pinned)
-        state.pinned.reset();
-    else if (state.messagesOpen || state.signalsOpen)
-        state.messagesOpen = state.signalsOpen = false;
-    else
-        state.quit = true;
+    if (state.helpOpen) state.helpOpen = false;
+    else if (state.browserOpen) state.browserOpen = false;
+    else if (state.uiHidden) state.uiHidden = false;
+    else if (state.pinned) state.pinned.reset();
+    else if (state.messagesOpen || state.signalsOpen) state.messagesOpen = state.signalsOpen = false;
+    else state.quit = true;
 }
 
-std::string vectorText(const Vec3& v) {
-    return fmt::format("{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z);
-}
+std::string vectorText(const Vec3& v) { return fmt::format("{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z); }
 
 void runPictureCommand(AppState& state, UiCommand command, int index) {
     switch (command) {
-        case UiCommand::ShowBuffer:
-            showBuffer(state, index);
-            break;
-        case UiCommand::PickBuffer:
-            state.bufferPickerWanted = true;
-            break;
-        case UiCommand::NextModule:
-            cycleModule(state, 1);
-            break;
-        case UiCommand::PreviousModule:
-            cycleModule(state, -1);
-            break;
+        case UiCommand::ShowBuffer: showBuffer(state, index); break;
+        case UiCommand::PickBuffer: state.bufferPickerWanted = true; break;
+        case UiCommand::NextModule: cycleModule(state, 1); break;
+        case UiCommand::PreviousModule: cycleModule(state, -1); break;
         case UiCommand::CycleLayout:
             state.setLayout(static_cast<Layout>((static_cast<int>(state.layout()) + 1) % 3));
             break;
-        case UiCommand::SwapPanes:
-            swapPanes(state);
-            break;
-        case UiCommand::ExposureDown:
-            changeExposure(state, -0.25f);
-            break;
-        case UiCommand::ExposureUp:
-            changeExposure(state, 0.25f);
-            break;
-        case UiCommand::Fit:
-            state.view.fit();
-            break;
-        case UiCommand::ActualSize:
-            state.view.setZoom(1);
-            break;
-        case UiCommand::Loupe:
-            state.loupe = !state.loupe;
-            break;
-        default:
-            break;
+        case UiCommand::SwapPanes: swapPanes(state); break;
+        case UiCommand::ExposureDown: changeExposure(state, -0.25f); break;
+        case UiCommand::ExposureUp: changeExposure(state, 0.25f); break;
+        case UiCommand::Fit: state.view.fit(); break;
+        case UiCommand::ActualSize: state.view.setZoom(1); break;
+        case UiCommand::Loupe: state.loupe = !state.loupe; break;
+        default: break;
     }
 }
 
@@ -146,17 +117,10 @@ void makeReference(AppState& state) {
 void runMeasureCommand(AppState& state, UiCommand command) {
     const bool present = state.metrics.reference().present;
     switch (command) {
-        case UiCommand::MakeReference:
-            makeReference(state);
-            break;
-        case UiCommand::ShowReference:
-            state.showReference = present && !state.showReference;
-            break;
-        case UiCommand::ToggleErrorMap:
-            state.errorMap = state.errorMap.empty() && present ? "flip" : "";
-            break;
-        default:
-            return;
+        case UiCommand::MakeReference: makeReference(state); break;
+        case UiCommand::ShowReference: state.showReference = present && !state.showReference; break;
+        case UiCommand::ToggleErrorMap: state.errorMap = state.errorMap.empty() && present ? "flip" : ""; break;
+        default: return;
     }
     if (!present && command != UiCommand::MakeReference)
         state.log.info("There is no reference yet; " + shortcutText(UiCommand::MakeReference) + " makes one.");
@@ -165,12 +129,8 @@ void runMeasureCommand(AppState& state, UiCommand command) {
 void runTimeCommand(AppState& state, UiCommand command) {
     Session& session = state.session;
     switch (command) {
-        case UiCommand::PlayTime:
-            session.setPlaying(!session.playing());
-            break;
-        case UiCommand::PauseRendering:
-            state.setRendering(!session.rendering());
-            break;
+        case UiCommand::PlayTime: session.setPlaying(!session.playing()); break;
+        case UiCommand::PauseRendering: state.setRendering(!session.rendering()); break;
         case UiCommand::Step:
             state.setRendering(false);
             session.step();
@@ -183,57 +143,32 @@ void runTimeCommand(AppState& state, UiCommand command) {
             if (state.document.number("time", 0) != 0) state.setOnce("time", 0.0f);
             session.restart();
             break;
-        case UiCommand::ReloadScene:
-            session.reload();
-            break;
-        case UiCommand::Undo:
-            session.undo();
-            break;
-        case UiCommand::Redo:
-            session.redo();
-            break;
-        default:
-            break;
+        case UiCommand::ReloadScene: session.reload(); break;
+        case UiCommand::Undo: session.undo(); break;
+        case UiCommand::Redo: session.redo(); break;
+        default: break;
     }
 }
 
 void runWindowCommand(AppState& state, UiCommand command, int index) {
     switch (command) {
-        case UiCommand::ToggleOrbit:
-            state.leftDragOrbits = !state.leftDragOrbits;
-            break;
+        case UiCommand::ToggleOrbit: state.leftDragOrbits = !state.leftDragOrbits; break;
         case UiCommand::StoreBookmark:
             state.bookmarks()[static_cast<size_t>(index)] = state.document.camera();
             state.log.info(fmt::format("Camera stored as bookmark {}.", index + 1));
             break;
-        case UiCommand::RecallBookmark:
-            recallBookmark(state, index);
-            break;
+        case UiCommand::RecallBookmark: recallBookmark(state, index); break;
         case UiCommand::CopyCamera:
             state.clipboard = cameraAsCommandLine(state.document.camera());
             state.log.info("Camera copied: " + state.clipboard);
             break;
-        case UiCommand::OpenScene:
-            state.browserOpen = !state.browserOpen;
-            break;
-        case UiCommand::SavePicture:
-            state.session.captureView(state.activePane, captureStem(state), "png");
-            break;
-        case UiCommand::SaveBuffers:
-            state.session.captureView(state.activePane, captureStem(state), "exr");
-            break;
-        case UiCommand::SaveWindow:
-            state.windowShotWanted = true;
-            break;
-        case UiCommand::ResetAll:
-            resetAll(state);
-            break;
-        case UiCommand::ToggleUi:
-            state.uiHidden = !state.uiHidden;
-            break;
-        case UiCommand::TogglePanel:
-            state.panelHidden = !state.panelHidden;
-            break;
+        case UiCommand::OpenScene: state.browserOpen = !state.browserOpen; break;
+        case UiCommand::SavePicture: state.session.captureView(state.activePane, captureStem(state), "png"); break;
+        case UiCommand::SaveBuffers: state.session.captureView(state.activePane, captureStem(state), "exr"); break;
+        case UiCommand::SaveWindow: state.windowShotWanted = true; break;
+        case UiCommand::ResetAll: resetAll(state); break;
+        case UiCommand::ToggleUi: state.uiHidden = !state.uiHidden; break;
+        case UiCommand::TogglePanel: state.panelHidden = !state.panelHidden; break;
         case UiCommand::ToggleMessages:
             state.messagesOpen = !state.messagesOpen;
             state.signalsOpen = false;
@@ -243,20 +178,11 @@ void runWindowCommand(AppState& state, UiCommand command, int index) {
             state.messagesOpen = false;
             if (state.signalsOpen && !state.session.signalCheck()) state.session.checkSignals();
             break;
-        case UiCommand::CheckSignals:
-            state.session.checkSignals();
-            break;
-        case UiCommand::Help:
-            state.helpOpen = !state.helpOpen;
-            break;
-        case UiCommand::Close:
-            closeTopmost(state);
-            break;
-        case UiCommand::Quit:
-            state.quit = true;
-            break;
-        default:
-            break;
+        case UiCommand::CheckSignals: state.session.checkSignals(); break;
+        case UiCommand::Help: state.helpOpen = !state.helpOpen; break;
+        case UiCommand::Close: closeTopmost(state); break;
+        case UiCommand::Quit: state.quit = true; break;
+        default: break;
     }
 }
 

@@ -26,14 +26,10 @@ struct UiContext {
     UiMap map;
 };
 
-inline UiContext& ui() {
-    return *static_cast<UiContext*>(ImGui::GetIO().UserData);
-}
+inline UiContext& ui() { return *static_cast<UiContext*>(ImGui::GetIO().UserData); }
 
 /// Design pixels to framebuffer pixels.
-inline float px(float design) {
-    return design * ui().scale;
-}
+inline float px(float design) { return design * ui().scale; }
 
 /// Names the item drawn last, so that scripts and tests can click it.
 void markItem(const std::string& name);

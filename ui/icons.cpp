@@ -47,9 +47,7 @@ private:
 
 void drawTransport(const Pen& pen, Icon icon) {
     switch (icon) {
-        case Icon::Play:
-            pen.filled({{-0.5f, -0.75f}, {0.75f, 0}, {-0.5f, 0.75f}});
-            break;
+        case Icon::Play: pen.filled({{-0.5f, -0.75f}, {0.75f, 0}, {-0.5f, 0.75f}}); break;
         case Icon::Pause:
             pen.bar(-0.6f, -0.7f, -0.15f, 0.7f);
             pen.bar(0.15f, -0.7f, 0.6f, 0.7f);
@@ -76,16 +74,13 @@ void drawTransport(const Pen& pen, Icon icon) {
                 {{0.75f, -0.15f}, {-0.25f, -0.15f}, {-0.62f, 0.02f}, {-0.72f, 0.3f}, {-0.6f, 0.6f}, {-0.2f, 0.75f}});
             pen.line({{0.35f, -0.6f}, {0.8f, -0.15f}, {0.35f, 0.3f}});
             break;
-        default:
-            break;
+        default: break;
     }
 }
 
 void drawPane(const Pen& pen, Icon icon) {
     switch (icon) {
-        case Icon::Single:
-            pen.box(-0.85f, -0.65f, 0.85f, 0.65f);
-            break;
+        case Icon::Single: pen.box(-0.85f, -0.65f, 0.85f, 0.65f); break;
         case Icon::SideBySide:
             pen.box(-0.9f, -0.65f, -0.1f, 0.65f);
             pen.box(0.1f, -0.65f, 0.9f, 0.65f);
@@ -110,8 +105,7 @@ void drawPane(const Pen& pen, Icon icon) {
             pen.circle(-0.15f, -0.15f, 0.55f);
             pen.line({{0.27f, 0.27f}, {0.8f, 0.8f}});
             break;
-        default:
-            break;
+        default: break;
     }
 }
 
@@ -131,9 +125,7 @@ void drawSign(const Pen& pen, Icon icon) {
             pen.line({{-0.6f, -0.6f}, {0.6f, 0.6f}});
             pen.line({{0.6f, -0.6f}, {-0.6f, 0.6f}});
             break;
-        case Icon::Chevron:
-            pen.line({{-0.5f, -0.25f}, {0, 0.25f}, {0.5f, -0.25f}});
-            break;
+        case Icon::Chevron: pen.line({{-0.5f, -0.25f}, {0, 0.25f}, {0.5f, -0.25f}}); break;
         case Icon::Warning:
             pen.line({{0, -0.8f}, {0.9f, 0.7f}, {-0.9f, 0.7f}}, true);
             pen.line({{0, -0.25f}, {0, 0.2f}});
@@ -179,11 +171,8 @@ void drawSign(const Pen& pen, Icon icon) {
             pen.circle(0, -0.25f, 0.45f);
             pen.line({{0, 0.2f}, {0, 0.9f}});
             break;
-        case Icon::Lens:
-            pen.circle(0, 0, 0.8f);
-            break;
-        default:
-            break;
+        case Icon::Lens: pen.circle(0, 0, 0.8f); break;
+        default: break;
     }
 }
 

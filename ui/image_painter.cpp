@@ -10,9 +10,7 @@ ImagePainter::ImagePainter(const GlFunctions& gl)
     for (auto& texture : textures_) texture = std::make_unique<GlTexture>(gl, GlFilter::Nearest);
 }
 
-ImagePainter::~ImagePainter() {
-    gl_.DeleteVertexArrays(1, &vertexArray_);
-}
+ImagePainter::~ImagePainter() { gl_.DeleteVertexArrays(1, &vertexArray_); }
 
 void ImagePainter::setPicture(int index, std::shared_ptr<const Image8> picture) {
     const auto i = static_cast<size_t>(index);

@@ -9,9 +9,7 @@ namespace lumi {
 
 namespace {
 
-bool& keyDown(Key key) {
-    return ImGui::GetIO().KeysDown[static_cast<int>(key)];
-}
+bool& keyDown(Key key) { return ImGui::GetIO().KeysDown[static_cast<int>(key)]; }
 
 void updateModifiers() {
     ImGuiIO& io = ImGui::GetIO();
@@ -21,9 +19,7 @@ void updateModifiers() {
     io.KeySuper = keyDown(Key::LeftSuper) || keyDown(Key::RightSuper);
 }
 
-bool isModifier(Key key) {
-    return key >= Key::LeftShift && key <= Key::RightSuper;
-}
+bool isModifier(Key key) { return key >= Key::LeftShift && key <= Key::RightSuper; }
 
 /// Applies events; false if one must wait for the next frame.
 class Applier {

@@ -19,14 +19,10 @@ std::string number(float value) {
 
 ImU32 channelColour(char channel) {
     switch (channel) {
-        case 'R':
-            return IM_COL32(255, 138, 138, 255);
-        case 'G':
-            return IM_COL32(128, 218, 150, 255);
-        case 'B':
-            return IM_COL32(128, 178, 255, 255);
-        default:
-            return palette::kText;
+        case 'R': return IM_COL32(255, 138, 138, 255);
+        case 'G': return IM_COL32(128, 218, 150, 255);
+        case 'B': return IM_COL32(128, 178, 255, 255);
+        default: return palette::kText;
     }
 }
 
@@ -108,7 +104,8 @@ void drawInspector(AppState& state) {
     smallText(state.pinned ? "pinned; click it again to release" : "under the pointer",
               state.pinned ? palette::kAccent : palette::kDim);
     const auto lineage = state.snapshot->lineages.find(state.module(state.activePane));
-    if (state.pinned && lineage != state.snapshot->lineages.end() && lineage->second.pixel == *pixel) drawLineage(lineage->second);
+    if (state.pinned && lineage != state.snapshot->lineages.end() && lineage->second.pixel == *pixel)
+        drawLineage(lineage->second);
     if (!ImGui::BeginTable("pixel", 2, ImGuiTableFlags_RowBg)) return;
     ImGui::TableSetupColumn("buffer", ImGuiTableColumnFlags_WidthFixed, px(104));
     ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);

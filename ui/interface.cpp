@@ -42,13 +42,9 @@ Interface::Interface(const GlFunctions& gl, Session& session, MessageLog& log)
     setScale(1);
 }
 
-Interface::~Interface() {
-    ImGui::DestroyContext(imgui_);
-}
+Interface::~Interface() { ImGui::DestroyContext(imgui_); }
 
-UiMap& Interface::uiMap() {
-    return context_->map;
-}
+UiMap& Interface::uiMap() { return context_->map; }
 
 void Interface::setScale(float scale) {
     if (scale == context_->scale) return;
@@ -72,10 +68,8 @@ void Interface::dispatch(const FrameInput& input) {
             command->command == UiCommand::Quit || command->command == UiCommand::Help || chord.key >= Key::F1;
         if (typing && !always) continue;
         const bool popup = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-        if (command->command == UiCommand::Close && popup)
-            ImGui::ClosePopupToLevel(0, true);
-        else
-            runCommand(state_, command->command, command->index);
+        if (command->command == UiCommand::Close && popup) ImGui::ClosePopupToLevel(0, true);
+        else runCommand(state_, command->command, command->index);
     }
 }
 
@@ -131,8 +125,7 @@ void Interface::draw(Extent2 target) {
     gl_.Viewport(0, 0, target.width, target.height);
     gl_.ClearColor(background.x, background.y, background.z, 1);
     gl_.Clear(GL_COLOR_BUFFER_BIT);
-    for (int pane = 0; pane < ImagePainter::kPictures; ++pane)
-        painter_.setPicture(pane, state_.picture(pane));
+    for (int pane = 0; pane < ImagePainter::kPictures; ++pane) painter_.setPicture(pane, state_.picture(pane));
     painter_.draw(pictures_, target, {background.x, background.y, background.z, 1});
     renderer_.draw(*ImGui::GetDrawData(), target);
 }
@@ -157,18 +150,12 @@ bool Interface::wantsFrame() const {
 
 PointerShape Interface::pointer() const {
     switch (ImGui::GetMouseCursor()) {
-        case ImGuiMouseCursor_TextInput:
-            return PointerShape::Text;
-        case ImGuiMouseCursor_ResizeEW:
-            return PointerShape::ResizeHorizontal;
-        case ImGuiMouseCursor_ResizeNS:
-            return PointerShape::ResizeVertical;
-        case ImGuiMouseCursor_ResizeAll:
-            return PointerShape::Move;
-        case ImGuiMouseCursor_Hand:
-            return PointerShape::Hand;
-        default:
-            return PointerShape::Arrow;
+        case ImGuiMouseCursor_TextInput: return PointerShape::Text;
+        case ImGuiMouseCursor_ResizeEW: return PointerShape::ResizeHorizontal;
+        case ImGuiMouseCursor_ResizeNS: return PointerShape::ResizeVertical;
+        case ImGuiMouseCursor_ResizeAll: return PointerShape::Move;
+        case ImGuiMouseCursor_Hand: return PointerShape::Hand;
+        default: return PointerShape::Arrow;
     }
 }
 

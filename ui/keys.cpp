@@ -71,14 +71,10 @@ std::optional<KeyChord> parseChord(const std::string& text) {
     std::string rest = lower(text);
     for (size_t plus = rest.find('+'); plus != std::string::npos && plus + 1 < rest.size(); plus = rest.find('+')) {
         const std::string modifier = rest.substr(0, plus);
-        if (modifier == "ctrl")
-            chord.control = true;
-        else if (modifier == "shift")
-            chord.shift = true;
-        else if (modifier == "alt")
-            chord.alt = true;
-        else
-            return std::nullopt;
+        if (modifier == "ctrl") chord.control = true;
+        else if (modifier == "shift") chord.shift = true;
+        else if (modifier == "alt") chord.alt = true;
+        else return std::nullopt;
         rest.erase(0, plus + 1);
     }
     chord.key = keyByName(rest);

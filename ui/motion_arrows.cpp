@@ -26,16 +26,22 @@ void drawArrow(ImDrawList& list, const ImVec2& from, const ImVec2& along) {
     stroke(IM_COL32(255, 255, 255, 230), px(1.2f));
 }
 
-/// The wheel's hues, and what its rim and the arrows stand for; `magnified` 0: there are none, and the rim's unit is the buffer's.
+/// The wheel's hues, and what its rim and the arrows stand for; `magnified` 0: there are none, and the rim's unit is
+/// the buffer's.
 void drawWheelLegend(const DisplayInfo& info, float magnified, const ImRect& visible) {
     const WithFont font(ui().fonts.small);
     const std::string first = fmt::format("rim {:.3g}{}", info.high, magnified > 0 ? " px" : "");
-    const std::string second = magnified == 0 ? "" : magnified == 1 ? "arrows to where it was" : fmt::format("arrows to where it was, x{:g}", magnified);
-    const float radius = px(15), width = 2 * radius + px(10) + std::max(ImGui::CalcTextSize(first.c_str()).x, ImGui::CalcTextSize(second.c_str()).x);
+    const std::string second = magnified == 0   ? ""
+                               : magnified == 1 ? "arrows to where it was"
+                                                : fmt::format("arrows to where it was, x{:g}", magnified);
+    const float radius = px(15),
+                width = 2 * radius + px(10) +
+                        std::max(ImGui::CalcTextSize(first.c_str()).x, ImGui::CalcTextSize(second.c_str()).x);
     if (visible.GetWidth() < width + px(60)) return;
     const ImVec2 corner(visible.Max.x - width - px(22), visible.Max.y - px(52));
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(corner - ImVec2(px(10), px(8)), corner + ImVec2(width + px(10), 2 * radius + px(8)), palette::kOverlay, px(5));
+    list.AddRectFilled(corner - ImVec2(px(10), px(8)), corner + ImVec2(width + px(10), 2 * radius + px(8)),
+                       palette::kOverlay, px(5));
     const ImVec2 centre = corner + ImVec2(radius, radius);
     constexpr int kSectors = 36;
     for (int i = 0; i < kSectors; ++i) {
@@ -64,7 +70,8 @@ void drawMotionArrows(AppState& state, int pane, const ImRect& rect, const ImRec
         return;
     }
     const float zoom = state.view.zoom(), spacing = px(kSpacing);
-    // The rim's motion is as long as arrows are apart: magnified or shrunk by a power of two, so that it can be read off.
+    // The rim's motion is as long as arrows are apart: magnified or shrunk by a power of two, so that it can be read
+    // off.
     const float magnified = std::exp2(std::floor(std::log2(spacing / (shown->info.high * zoom))));
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.PushClipRect(visible.Min, visible.Max, true);

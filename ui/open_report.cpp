@@ -32,7 +32,8 @@ void openInBrowser(const fs::path& file, MessageLog& log) {
     pid_t child = 0;
     const int failure = posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
-    if (failure != 0) return log.warning(name + ": no browser could be started (xdg-open is not installed); open it by hand");
+    if (failure != 0)
+        return log.warning(name + ": no browser could be started (xdg-open is not installed); open it by hand");
     std::thread([child] { waitpid(child, nullptr, 0); }).detach();
     log.info("Opening " + name + " in the browser");
 }

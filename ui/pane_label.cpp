@@ -63,7 +63,8 @@ void drawPaneLabel(AppState& state, int pane, const ImRect& rect, bool alignRigh
     const std::string module = state.module(pane), buffer = state.buffer(pane);
     std::string words = shown ? details(*shown) : std::string();
     if (shown && shown->info.nonFinite > 0) words += fmt::format(" · {} pixels not finite", shown->info.nonFinite);
-    if (shown && shown->droppedPixels > 0) words += fmt::format(" · {} pixels dropped, not finite", shown->droppedPixels);
+    if (shown && shown->droppedPixels > 0)
+        words += fmt::format(" · {} pixels dropped, not finite", shown->droppedPixels);
 
     if (state.showsReference()) words = "reference, " + state.metrics.reference().name;
     else if (state.shownMap(pane)) words = "error: " + state.errorMap;

@@ -127,21 +127,11 @@ void valueWidget(const ParameterInfo& info, float width, ParameterEdit& edit) {
     ParameterValue value = info.value;
     bool changed = false;
     switch (info.type) {
-        case ParameterType::Number:
-            changed = numberWidget(info, std::get<float>(value), width);
-            break;
-        case ParameterType::Integer:
-            changed = integerWidget(info, std::get<int>(value), width);
-            break;
-        case ParameterType::Toggle:
-            changed = toggleSwitch("##value", std::get<bool>(value));
-            break;
-        case ParameterType::Colour:
-            changed = colourWidget(info, std::get<Vec3>(value), width);
-            break;
-        case ParameterType::Vector:
-            changed = vectorWidget(info, std::get<Vec3>(value), width);
-            break;
+        case ParameterType::Number: changed = numberWidget(info, std::get<float>(value), width); break;
+        case ParameterType::Integer: changed = integerWidget(info, std::get<int>(value), width); break;
+        case ParameterType::Toggle: changed = toggleSwitch("##value", std::get<bool>(value)); break;
+        case ParameterType::Colour: changed = colourWidget(info, std::get<Vec3>(value), width); break;
+        case ParameterType::Vector: changed = vectorWidget(info, std::get<Vec3>(value), width); break;
         case ParameterType::Choice:
             if (const auto chosen = choiceWidget(info, std::get<std::string>(value), width)) {
                 value = *chosen;

@@ -13,12 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-json vectorJson(const Vec3& v) {
-    return {v.x, v.y, v.z};
-}
-Vec3 vectorFrom(const json& j) {
-    return {j.at(0).get<float>(), j.at(1).get<float>(), j.at(2).get<float>()};
-}
+json vectorJson(const Vec3& v) { return {v.x, v.y, v.z}; }
+Vec3 vectorFrom(const json& j) { return {j.at(0).get<float>(), j.at(1).get<float>(), j.at(2).get<float>()}; }
 
 json bookmarksJson(const AppState::Bookmarks& bookmarks) {
     json list = json::object();
@@ -71,7 +67,11 @@ void savePreferences(const AppState& state, const std::filesystem::path& path) {
     for (const auto& [scene, list] : state.bookmarksByScene)
         if (const json stored = bookmarksJson(list); !stored.empty()) bookmarks[scene] = stored;
     try {
-        writeFileAtomically(path, jsonText(json{{"version", 1}, {"recent", recent}, {"bookmarks", bookmarks}, {"check-scenes", state.checkScenes}}, 1));
+        writeFileAtomically(
+            path,
+            jsonText(
+                json{{"version", 1}, {"recent", recent}, {"bookmarks", bookmarks}, {"check-scenes", state.checkScenes}},
+                1));
     } catch (const std::exception& error) {
         state.log.warning(error.what());
     }

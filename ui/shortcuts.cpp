@@ -6,18 +6,10 @@ namespace lumi {
 
 namespace {
 
-constexpr KeyChord plain(Key key) {
-    return {key};
-}
-constexpr KeyChord control(Key key) {
-    return {key, true};
-}
-constexpr KeyChord shift(Key key) {
-    return {key, false, true};
-}
-constexpr KeyChord alt(Key key) {
-    return {key, false, false, true};
-}
+constexpr KeyChord plain(Key key) { return {key}; }
+constexpr KeyChord control(Key key) { return {key, true}; }
+constexpr KeyChord shift(Key key) { return {key, false, true}; }
+constexpr KeyChord alt(Key key) { return {key, false, false, true}; }
 
 constexpr auto kPicture = "Picture", kCamera = "Camera", kTime = "Time and rendering", kFiles = "Files",
                kWindow = "Window";
@@ -88,12 +80,8 @@ constexpr std::array kGestures{
 
 }  // namespace
 
-std::span<const Shortcut> shortcuts() {
-    return kShortcuts;
-}
-std::span<const Gesture> gestures() {
-    return kGestures;
-}
+std::span<const Shortcut> shortcuts() { return kShortcuts; }
+std::span<const Gesture> gestures() { return kGestures; }
 
 std::optional<DispatchedCommand> commandFor(const KeyChord& chord) {
     for (const Shortcut& row : kShortcuts) {

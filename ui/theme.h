@@ -24,9 +24,7 @@ constexpr ImU32 kError = IM_COL32(242, 104, 104, 255);
 constexpr ImU32 kOverlay = IM_COL32(30, 31, 35, 225);  ///< chips over the picture
 }  // namespace palette
 
-inline ImVec4 toVec4(ImU32 colour) {
-    return ImGui::ColorConvertU32ToFloat4(colour);
-}
+inline ImVec4 toVec4(ImU32 colour) { return ImGui::ColorConvertU32ToFloat4(colour); }
 inline ImU32 withAlpha(ImU32 colour, float alpha) {
     return (colour & ~IM_COL32_A_MASK) |
            (static_cast<ImU32>(alpha * static_cast<float>(colour >> IM_COL32_A_SHIFT)) << IM_COL32_A_SHIFT);

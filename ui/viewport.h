@@ -18,12 +18,14 @@ std::vector<ImRect> paneRects(const AppState& state, const ImRect& area);
 /// drawn last. `pane` is under the pointer.
 void handleViewportInput(AppState& state, const ImRect& pane);
 
-/// A grid of arrows over a buffer of motion (colour map `motion`), from pixels to where they were a frame earlier, and the wheel.
+/// A grid of arrows over a buffer of motion (colour map `motion`), from pixels to where they were a frame earlier, and
+/// the wheel.
 void drawMotionArrows(AppState& state, int pane, const ImRect& rect, const ImRect& visible);
-/// The 4x4 sub-pixels of every visible pixel of the buffer `bitmasks`, if it is zoomed in that far: blue samples are visible,
-/// red ones occluded [DalCorso17, fig. 6]. Returns whether they were drawn.
+/// The 4x4 sub-pixels of every visible pixel of the buffer `bitmasks`, if it is zoomed in that far: blue samples are
+/// visible, red ones occluded [DalCorso17, fig. 6]. Returns whether they were drawn.
 bool drawSubpixelGrid(AppState& state, int pane, const ImRect& rect, const ImRect& visible);
-/// What is written over the pane: chips, colour bar, arrows, pixel values, marks. `half` is the visible part under a wipe.
+/// What is written over the pane: chips, colour bar, arrows, pixel values, marks. `half` is the visible part under a
+/// wipe.
 void drawPaneOverlay(AppState& state, int pane, const ImRect& rect, const ImRect& visible);
 /// Chips with module and buffer, and the words that say exactly what is shown.
 void drawPaneLabel(AppState& state, int pane, const ImRect& rect, bool alignRight);

@@ -72,10 +72,8 @@ int segments(const char* name, std::initializer_list<const char*> texts, int cho
         markItem(std::string(name) + ":" + text);
         const ImRect box(ImGui::GetItemRectMin() + ImVec2(px(2), px(2)),
                          ImGui::GetItemRectMax() - ImVec2(px(2), px(2)));
-        if (index == chosen)
-            list.AddRectFilled(box.Min, box.Max, palette::kAccentDeep, px(4));
-        else if (ImGui::IsItemHovered())
-            list.AddRectFilled(box.Min, box.Max, palette::kHovered, px(4));
+        if (index == chosen) list.AddRectFilled(box.Min, box.Max, palette::kAccentDeep, px(4));
+        else if (ImGui::IsItemHovered()) list.AddRectFilled(box.Min, box.Max, palette::kHovered, px(4));
         drawTextCentred(list, box, text, index == chosen ? palette::kOnAccent : palette::kDim);
         ++index;
     }
@@ -99,10 +97,8 @@ int iconSegments(const char* name, std::initializer_list<Icon> icons, std::initi
         const ImRect box(ImGui::GetItemRectMin() + ImVec2(px(2), px(2)),
                          ImGui::GetItemRectMax() - ImVec2(px(2), px(2)));
         const bool hovered = ImGui::IsItemHovered();
-        if (index == chosen)
-            list.AddRectFilled(box.Min, box.Max, palette::kAccentDeep, px(4));
-        else if (hovered)
-            list.AddRectFilled(box.Min, box.Max, palette::kHovered, px(4));
+        if (index == chosen) list.AddRectFilled(box.Min, box.Max, palette::kAccentDeep, px(4));
+        else if (hovered) list.AddRectFilled(box.Min, box.Max, palette::kHovered, px(4));
         drawIcon(list, icons.begin()[i], box.GetCenter(), px(15), index == chosen ? palette::kOnAccent : palette::kDim);
         if (hovered) tooltip(tips.begin()[i], "", shortcutText(UiCommand::CycleLayout));
     }
@@ -141,9 +137,7 @@ void progressBar(float fraction, float width, float height, ImU32 colour) {
     if (to - from >= 1) list.AddRectFilled(corner + ImVec2(from, 0), corner + ImVec2(to, height), colour, rounding);
 }
 
-void dimText(const std::string& text) {
-    ImGui::TextColored(toVec4(palette::kDim), "%s", text.c_str());
-}
+void dimText(const std::string& text) { ImGui::TextColored(toVec4(palette::kDim), "%s", text.c_str()); }
 
 void smallText(const std::string& text, ImU32 colour) {
     const WithFont font(ui().fonts.small);
@@ -171,8 +165,7 @@ bool section(const char* title, bool openAtFirst) {
     const ImVec2 c(box.Min.x + px(5), box.GetCenter().y);
     if (open)
         list.AddTriangleFilled(c + ImVec2(-px(4), -px(2)), c + ImVec2(px(4), -px(2)), c + ImVec2(0, px(3)), colour);
-    else
-        list.AddTriangleFilled(c + ImVec2(-px(2), -px(4)), c + ImVec2(px(3), 0), c + ImVec2(-px(2), px(4)), colour);
+    else list.AddTriangleFilled(c + ImVec2(-px(2), -px(4)), c + ImVec2(px(3), 0), c + ImVec2(-px(2), px(4)), colour);
     const WithFont font(ui().fonts.strong);
     list.AddText(ImVec2(box.Min.x + px(16), std::floor(c.y - 0.5f * ImGui::GetFontSize())), palette::kText, title);
     return open;
@@ -208,9 +201,7 @@ void tooltip(const std::string& title, const std::string& text, const std::strin
     ImGui::PopStyleVar();
 }
 
-std::string tipFor(const char* what, UiCommand command) {
-    return std::string(what) + "   " + shortcutText(command);
-}
+std::string tipFor(const char* what, UiCommand command) { return std::string(what) + "   " + shortcutText(command); }
 
 bool searchField(const char* name, std::string& text, const char* hint, float width) {
     ImGui::SetNextItemWidth(width);

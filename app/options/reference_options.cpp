@@ -12,13 +12,16 @@ public:
     ReferenceSubcommand(CLI::App& parent, CommandLine& line)
         : Subcommand(parent, line, "reference", "Converge an image, kept and resumable") {
         ReferenceCommand& reference = line_.reference;
-        app_->add_option("scene", reference.scene.scene, "Scene to render: a name or a path")->required()->type_name("SCENE");
+        app_->add_option("scene", reference.scene.scene, "Scene to render: a name or a path")
+            ->required()
+            ->type_name("SCENE");
         addShared(*app_, text_, reference.scene);
         app_->get_option("--spp")->description("Samples a pixel (1024)");
         app_->get_option("--module")->description("accumulate, which is what converges");
         app_->add_option("--error", reference.error,
-                        "Instead of --spp: go on until the relative standard error is at most this")
-            ->type_name("E")->check(between(1e-6, 1e3))
+                         "Instead of --spp: go on until the relative standard error is at most this")
+            ->type_name("E")
+            ->check(between(1e-6, 1e3))
             ->excludes("--spp")
             ->take_last();
         app_->add_option("--samples", samples_, "Only the sums of samples A to B-1, multiples of 16, for `merge`")
@@ -27,10 +30,13 @@ public:
             ->take_last();
         addCameraPath(*app_, reference.scene);
         app_->add_option("--frames", frames_, "A reference for each of frames 0..N-1, or A..B without B (1)")
-            ->type_name("N|A..B")->take_last();
-        addRepeatable(*app_, "--out", reference.out, "PATH",
-                      "File to write: .exr or .png, %04d is the frame number; repeatable (<scene>.reference.exr, a free name)");
-        app_->add_option("--buffers", reference.buffers, "Signals to add to .exr files as layers, or all")->type_name("NAME,...");
+            ->type_name("N|A..B")
+            ->take_last();
+        addRepeatable(
+            *app_, "--out", reference.out, "PATH",
+            "File to write: .exr or .png, %04d is the frame number; repeatable (<scene>.reference.exr, a free name)");
+        app_->add_option("--buffers", reference.buffers, "Signals to add to .exr files as layers, or all")
+            ->type_name("NAME,...");
         app_->add_flag("--half", reference.half, "Store colours of .exr files as half");
         progress_.add(*app_);
         addMachine(*app_, line_.machine, true);
@@ -65,16 +71,17 @@ public:
     MergeSubcommand(CLI::App& parent, CommandLine& line)
         : Subcommand(parent, line, "merge", "Add up parts that `reference --samples` wrote") {
         app_->add_option("parts", line_.merge.parts, "Parts whose samples follow each other, in any order")
-            ->required()->type_name("PART...");
+            ->required()
+            ->type_name("PART...");
         app_->add_option("--out", line_.merge.out, "Image (.exr, .png), or a larger part (.lumiref)")
-            ->required()->type_name("FILE")->take_last();
+            ->required()
+            ->type_name("FILE")
+            ->take_last();
         addMachine(*app_, line_.machine, true);
         app_->footer("Example:\n  lumiscope merge a.lumiref b.lumiref --out cornell.exr");
     }
 
-    void finish() override {
-        line_.command = Command::Merge;
-    }
+    void finish() override { line_.command = Command::Merge; }
 };
 
 }  // namespace

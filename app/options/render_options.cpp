@@ -13,7 +13,8 @@ public:
         : Subcommand(parent, line, "render", "Render frames through one module, without a window") {
         RenderOptions& render = line_.render;
         app_->add_option("scene", render.scene.scene, "Scene to render: a name or a path")->type_name("SCENE");
-        app_->add_option("--replay", render.replay, "Make the image of a .exr, .png or .json again from the state inside")
+        app_->add_option("--replay", render.replay,
+                         "Make the image of a .exr, .png or .json again from the state inside")
             ->type_name("FILE");
         addShared(*app_, text_, render.scene);
         frames_.add(*app_);
@@ -21,10 +22,12 @@ public:
         addRepeatable(*app_, "--out", render.out, "PATH",
                       "File to write: .exr, .png or .mp4, %04d is the frame number; repeatable "
                       "(<scene>.<module>.exr, a free name)");
-        app_->add_option("--buffers", render.buffers, "Layers to add to .exr files, as `list buffers` names them, or all")
+        app_->add_option("--buffers", render.buffers,
+                         "Layers to add to .exr files, as `list buffers` names them, or all")
             ->type_name("NAME,...");
         app_->add_flag("--stereo", render.stereo,
-                       "Render both eyes of the camera's pair: NAME.left.EXT and NAME.right.EXT; camera.interaxial is their distance");
+                       "Render both eyes of the camera's pair: NAME.left.EXT and NAME.right.EXT; camera.interaxial is "
+                       "their distance");
         app_->add_flag("--half", render.half, "Store colours of .exr files as half");
         progress_.add(*app_);
         addMachine(*app_, line_.machine, true);
@@ -35,8 +38,7 @@ public:
         line_.command = Command::Render;
         RenderOptions& render = line_.render;
         addValues(text_, render.scene);
-        if (render.scene.modules.size() > 1)
-            throwUsage({"render runs one module", "--module", "one instance", ""});
+        if (render.scene.modules.size() > 1) throwUsage({"render runs one module", "--module", "one instance", ""});
         if (!frames_.frames.empty()) render.frames = parseFrames(frames_.frames);
         render.warmUp = parseWarmUp(frames_.warmUp, render.frames);
         checkTime(render);
@@ -44,8 +46,9 @@ public:
         render.progress = progress_.progress();
         if (render.scene.scene.empty() && render.replay.empty())
             throwUsage({"render needs a scene", "", "lumiscope render SCENE, or --replay FILE", ""});
-        if (!render.replay.empty() && (!render.scene.values.empty() || !frames_.frames.empty() || !frames_.warmUp.empty() ||
-                                       !render.scene.cameraPath.empty() || !render.buffers.empty() || render.half || render.stereo))
+        if (!render.replay.empty() &&
+            (!render.scene.values.empty() || !frames_.frames.empty() || !frames_.warmUp.empty() ||
+             !render.scene.cameraPath.empty() || !render.buffers.empty() || render.half || render.stereo))
             throwUsage({"everything about the image comes from the file", "--replay",
                         "only SCENE (where it is now), --out and options of the machine beside it", ""});
     }

@@ -8,7 +8,8 @@
 namespace lumi {
 
 /// An option that may stand several times, each with one value.
-void addRepeatable(CLI::App& app, const char* name, std::vector<std::string>& values, const char* type, const char* help);
+void addRepeatable(CLI::App& app, const char* name, std::vector<std::string>& values, const char* type,
+                   const char* help);
 /// --module, --set and the parameters that have an option of their own: addValues() makes document values of them.
 void addShared(CLI::App& app, SharedText& text, SceneOptions& scene);
 void addCameraPath(CLI::App& app, SceneOptions& scene);

@@ -12,9 +12,11 @@ public:
         : Subcommand(parent, line, "study", "Run a study: scenes, methods and metrics, with a report") {
         app_->add_option("file", line_.study.file, "Study to run: a name or a path")->required()->type_name("FILE");
         app_->add_option("--preset", line_.study.preset, "Size of the study: quick (if it has that), paper, or another")
-            ->type_name("NAME")->take_last();
+            ->type_name("NAME")
+            ->take_last();
         app_->add_option("--out", line_.study.out, "Folder for results, resumed if it holds some (<study>-<preset>)")
-            ->type_name("DIR")->take_last();
+            ->type_name("DIR")
+            ->take_last();
         progress_.add(*app_);
         addMachine(*app_, line_.machine, true);
         app_->footer(studyFooter());
@@ -34,15 +36,14 @@ public:
     BenchSubcommand(CLI::App& parent, CommandLine& line)
         : Subcommand(parent, line, "bench", "Measure speed and memory against bare Embree and memory bandwidth") {
         app_->add_option("--filter", line_.filter, "Only entries in whose name this regular expression is found")
-            ->type_name("RE")->take_last();
+            ->type_name("RE")
+            ->take_last();
         app_->add_flag("--check", line_.check, "Exit with 1 where a mark (mark/...) is missed");
         addMachine(*app_, line_.machine, true);
         app_->footer(benchFooter);
     }
 
-    void finish() override {
-        line_.command = Command::Bench;
-    }
+    void finish() override { line_.command = Command::Bench; }
 };
 
 }  // namespace

@@ -7,10 +7,10 @@ namespace lumi {
 /// What kind of failure an Error is; the value is the program's exit code (see README, "Exit codes").
 enum class ErrorKind {
     CheckFailed = 1,
-    Usage = 2,        ///< unknown scene, module, metric, parameter or option
-    BadInput = 3,     ///< a file that cannot be read or does not hold what it should
-    NoDisplay = 4,    ///< no window system and no OpenGL context
-    Resources = 5,    ///< memory limit, disk full
+    Usage = 2,      ///< unknown scene, module, metric, parameter or option
+    BadInput = 3,   ///< a file that cannot be read or does not hold what it should
+    NoDisplay = 4,  ///< no window system and no OpenGL context
+    Resources = 5,  ///< memory limit, disk full
     Interrupted = 130
 };
 
@@ -18,10 +18,10 @@ enum class ErrorKind {
 /// `atrium.json:12:9: "levels" is out of range; expected 1 to 8, found 12`.
 /// Broken promises between our own functions are asserts, not Errors.
 struct ErrorText {
-    std::string what{};    ///< the fault in one clause
-    std::string where{};    ///< file, file:line:column, or file + JSON path; may be empty
-    std::string expected{}; ///< may be empty
-    std::string found{};    ///< may be empty
+    std::string what{};      ///< the fault in one clause
+    std::string where{};     ///< file, file:line:column, or file + JSON path; may be empty
+    std::string expected{};  ///< may be empty
+    std::string found{};     ///< may be empty
 };
 
 class Error : public std::runtime_error {

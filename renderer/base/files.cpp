@@ -52,7 +52,8 @@ void createFolderOf(const fs::path& path) {
     if (failure) throwWriteError(path, failure.value(), "cannot be written: its folder cannot be created");
 }
 
-/// `<file>.<process>.<serial>.tmp`, which unfinishedFile() knows, a name for each call; of the file's own only so much as file systems take.
+/// `<file>.<process>.<serial>.tmp`, which unfinishedFile() knows, a name for each call; of the file's own only so much
+/// as file systems take.
 fs::path temporaryBeside(const fs::path& path) {
     constexpr size_t kLongestName = 255;
     static std::atomic<uint32_t> serial{0};  // two threads may write one path

@@ -18,12 +18,12 @@ std::string readTextFile(const std::filesystem::path& path, uint64_t limitBytes 
 void writeFileAtomically(const std::filesystem::path& path, std::span<const uint8_t> bytes);
 void writeFileAtomically(const std::filesystem::path& path, std::string_view text);
 
-/// The same, but over no other file: under `path`, or `stem-1.ext`, `stem-2.ext`, ... : the first that is free once all is
-/// written. Returns it.
+/// The same, but over no other file: under `path`, or `stem-1.ext`, `stem-2.ext`, ... : the first that is free once all
+/// is written. Returns it.
 std::filesystem::path writeNewFile(const std::filesystem::path& path, std::span<const uint8_t> bytes);
 
-/// Creates the folder of `path` if needed. Throws as writeFileAtomically() would: nothing could be written there, the name is
-/// too long.
+/// Creates the folder of `path` if needed. Throws as writeFileAtomically() would: nothing could be written there, the
+/// name is too long.
 void requireWritable(const std::filesystem::path& path);
 
 /// What an interrupted write left: a part of `whole` (of a long name its beginning), by the process of that number.

@@ -14,7 +14,8 @@
 namespace lumi {
 namespace {
 
-constexpr int kCollapse = 25;  ///< MADV_COLLAPSE of Linux 6.1, at once and not some time; Debian 12's headers do not name it
+/// MADV_COLLAPSE of Linux 6.1, at once and not some time; Debian 12's headers do not name it
+constexpr int kCollapse = 25;
 constexpr uintptr_t kHuge = uintptr_t(2) << 20;
 /// Larger ranges are addresses that were reserved for later (sanitizers do, and drivers).
 constexpr uintptr_t kReserved = uintptr_t(1) << 38;
@@ -46,8 +47,8 @@ std::vector<Range> privateMemory() {
         Range range;
         char access[8] = "", name[8] = "";
         uint64_t inode = 0;
-        const int fields = std::sscanf(line, "%" SCNxPTR "-%" SCNxPTR " %4s %*s %*s %" SCNu64 " %7s", &range.begin, &range.end,
-                                       access, &inode, name);
+        const int fields = std::sscanf(line, "%" SCNxPTR "-%" SCNxPTR " %4s %*s %*s %" SCNu64 " %7s", &range.begin,
+                                       &range.end, access, &inode, name);
         const bool unnamed = fields == 4, heap = fields == 5 && std::strcmp(name, "[heap]") == 0;
         if ((!unnamed && !heap) || inode != 0 || std::strcmp(access, "rw-p") != 0) continue;
         range = wholePages(range);

@@ -19,18 +19,24 @@ void setIsa(Isa isa);
 const char* isaName(Isa isa);
 Isa parseIsa(const std::string& name);
 
-/// Declares NAMETable(), which a file listed under KERNELS in lumi_library() defines once for each level, and NAMEKernels(),
-/// the table of the level in use. Stands in namespace lumi, in the header that defines `Struct`.
-#define LUMI_KERNELS(Struct, NAME)                       \
-    namespace baseline { const Struct& NAME##Table(); }   \
-    namespace v3 { const Struct& NAME##Table(); }         \
-    namespace v4 { const Struct& NAME##Table(); }         \
-    inline const Struct& NAME##Kernels() {                \
-        switch (activeIsa()) {                           \
-            case Isa::V4: return v4::NAME##Table();      \
-            case Isa::V3: return v3::NAME##Table();      \
-            default: return baseline::NAME##Table();     \
-        }                                                \
+/// Declares NAMETable(), which a file listed under KERNELS in lumi_library() defines once for each level, and
+/// NAMEKernels(), the table of the level in use. Stands in namespace lumi, in the header that defines `Struct`.
+#define LUMI_KERNELS(Struct, NAME)                   \
+    namespace baseline {                             \
+    const Struct& NAME##Table();                     \
+    }                                                \
+    namespace v3 {                                   \
+    const Struct& NAME##Table();                     \
+    }                                                \
+    namespace v4 {                                   \
+    const Struct& NAME##Table();                     \
+    }                                                \
+    inline const Struct& NAME##Kernels() {           \
+        switch (activeIsa()) {                       \
+            case Isa::V4: return v4::NAME##Table();  \
+            case Isa::V3: return v3::NAME##Table();  \
+            default: return baseline::NAME##Table(); \
+        }                                            \
     }
 
 }  // namespace lumi

@@ -30,10 +30,9 @@ uint64_t memoryLimit() { return limit(); }
 void checkMemory(const std::string& what, uint64_t bytes) {
     const uint64_t used = residentBytes();
     if (bytes <= memoryLimit() && used <= memoryLimit() - bytes) return;
-    throw Error(ErrorKind::Resources,
-                {fmt::format("{} needs {}, which passes the memory limit of {} ({} in use)", what, formatBytes(bytes),
-                             formatBytes(memoryLimit()), formatBytes(used)),
-                 "", "", ""});
+    throw Error(ErrorKind::Resources, {fmt::format("{} needs {}, which passes the memory limit of {} ({} in use)", what,
+                                                   formatBytes(bytes), formatBytes(memoryLimit()), formatBytes(used)),
+                                       "", "", ""});
 }
 
 uint64_t residentBytes() {
@@ -51,7 +50,8 @@ uint64_t peakResidentBytes() {
     unsigned long long kib = 0;
     if (std::FILE* file = std::fopen("/proc/self/status", "r")) {
         char line[256];
-        while (std::fgets(line, sizeof line, file) && std::sscanf(line, "VmHWM: %llu", &kib) != 1) {}
+        while (std::fgets(line, sizeof line, file) && std::sscanf(line, "VmHWM: %llu", &kib) != 1) {
+        }
         std::fclose(file);
     }
     if (kib > 0) return kib * 1024;

@@ -16,7 +16,8 @@ void checkMemory(const std::string& what, uint64_t bytes);
 uint64_t residentBytes();
 uint64_t peakResidentBytes();
 
-/// "1.5 GiB", "640 KiB"; parseBytes reads "512M", "2GiB", "75%" (of the machine's memory); throws Error(Usage) headed by `where`.
+/// "1.5 GiB", "640 KiB"; parseBytes reads "512M", "2GiB", "75%" (of the machine's memory); throws Error(Usage) headed
+/// by `where`.
 std::string formatBytes(uint64_t bytes);
 uint64_t parseBytes(const std::string& text, const std::string& where = "");
 

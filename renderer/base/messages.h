@@ -12,7 +12,7 @@ enum class Severity { Info, Warning, Error };
 struct Message {
     Severity severity = Severity::Info;
     std::string text;
-    int repeats = 1;  ///< how often the same text was reported
+    int repeats = 1;      ///< how often the same text was reported
     uint64_t serial = 0;  ///< MessageLog::serial() when it was reported last
 };
 

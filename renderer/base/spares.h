@@ -6,8 +6,8 @@
 
 namespace lumi {
 
-/// Large scratch that tasks borrow, one each, so that it is not made anew for each of them: there are at most as many as ran at
-/// a time. Any thread may take and give back.
+/// Large scratch that tasks borrow, one each, so that it is not made anew for each of them: there are at most as many
+/// as ran at a time. Any thread may take and give back.
 template <class T>
 class Spares {
 public:

@@ -4,8 +4,8 @@
 
 namespace lumi {
 
-/// Sets the size of a vector whose contents are of no more use. Where it has to grow it takes an eighth more than asked for,
-/// and gives back what it had first; resize() would take twice as much, and hold both at a time.
+/// Sets the size of a vector whose contents are of no more use. Where it has to grow it takes an eighth more than asked
+/// for, and gives back what it had first; resize() would take twice as much, and hold both at a time.
 template <class T>
 void resizeAnew(std::vector<T>& vector, size_t count) {
     if (count > vector.capacity()) {

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int64_t kRows = 16;  ///< rows of one task
 
-/// The i-th row of an image of `height` rows in the order 0, step, 2 step, ..., 1, 1 + step, ...: those that follow each other
-/// share four of the five rows of their windows, which then are in the cache still.
+/// The i-th row of an image of `height` rows in the order 0, step, 2 step, ..., 1, 1 + step, ...: those that follow
+/// each other share four of the five rows of their windows, which then are in the cache still.
 int rowInStride(int64_t i, int64_t height, int64_t step) {
     const int64_t rows = height / step, longer = height % step;  // the first `longer` of the strides have a row more
     const int64_t split = longer * (rows + 1);
@@ -42,7 +42,8 @@ void Illumination::reset(Extent2 extent) {
 }
 
 bool atrousLevel(const SurfaceGuide& guide, const AtrousSettings& settings, int step,
-                 const std::vector<const Illumination*>& in, const std::vector<Illumination*>& out, std::stop_token stop) {
+                 const std::vector<const Illumination*>& in, const std::vector<Illumination*>& out,
+                 std::stop_token stop) {
     assert(in.size() == out.size() && in.size() <= AtrousRow::kMaxComponents);
     const AtrousKernels& kernels = atrousKernels();
     AtrousRow shared;
@@ -61,13 +62,16 @@ bool atrousLevel(const SurfaceGuide& guide, const AtrousSettings& settings, int 
         shared.out[c].luminance = out[c]->luminance.data();
         shared.out[c].sampleVariance = out[c]->sampleVariance.data();
     }
-    parallelRanges(guide.height, kRows, [&](int64_t begin, int64_t end) {
-        AtrousRow row = shared;
-        for (int64_t i = begin; i < end; ++i) {
-            row.guide.y = rowInStride(i, guide.height, step);
-            kernels.filterRow(row);
-        }
-    }, stop);
+    parallelRanges(
+        guide.height, kRows,
+        [&](int64_t begin, int64_t end) {
+            AtrousRow row = shared;
+            for (int64_t i = begin; i < end; ++i) {
+                row.guide.y = rowInStride(i, guide.height, step);
+                kernels.filterRow(row);
+            }
+        },
+        stop);
     return !stop.stop_requested();
 }
 
@@ -84,10 +88,14 @@ bool estimateVarianceSpatially(const SurfaceGuide& guide, const EdgeStopping& ed
         shared.centred[c] = components[c].centred;
         shared.variance[c] = components[c].sampleVariance;
     }
-    parallelRanges(guide.height, kRows, [&](int64_t begin, int64_t end) {
-        SpatialVarianceRow row = shared;
-        for (row.guide.y = static_cast<int>(begin); row.guide.y < end; ++row.guide.y) spatialVarianceKernels().estimateRow(row);
-    }, stop);
+    parallelRanges(
+        guide.height, kRows,
+        [&](int64_t begin, int64_t end) {
+            SpatialVarianceRow row = shared;
+            for (row.guide.y = static_cast<int>(begin); row.guide.y < end; ++row.guide.y)
+                spatialVarianceKernels().estimateRow(row);
+        },
+        stop);
     return !stop.stop_requested();
 }
 

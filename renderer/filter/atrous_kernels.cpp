@@ -52,17 +52,20 @@ LUMI_LANES void start(const AtrousRow& row, int component, std::ptrdiff_t at, in
 
 /// Adds taps of eq. 1.
 template <int Components, bool Edge, size_t Taps>
-LUMI_LANES void add(const AtrousRow& row, const std::array<LaneTap<Edge>, Taps>& taps, Component (&components)[Components]) {
+LUMI_LANES void add(const AtrousRow& row, const std::array<LaneTap<Edge>, Taps>& taps,
+                    Component (&components)[Components]) {
     Lanes w[Taps * Components];
     for (size_t t = 0; t < Taps; ++t)
         for (int c = 0; c < Components; ++c) {
             const Lanes luminance = taps[t].span.load(row.in[c].luminance + taps[t].at);
-            w[t * Components + c] = subMul(taps[t].exponent, distanceOf(components[c].luminance, luminance), components[c].scale);
+            w[t * Components + c] =
+                subMul(taps[t].exponent, distanceOf(components[c].luminance, luminance), components[c].scale);
         }
     weightExp2(w);
     for (size_t t = 0; t < Taps; ++t)
         for (int c = 0; c < Components; ++c) {
-            const auto load = [&](const float* plane) LUMI_LANES_LAMBDA { return taps[t].span.load(plane + taps[t].at); };
+            const auto load = [&](const float* plane)
+                                  LUMI_LANES_LAMBDA { return taps[t].span.load(plane + taps[t].at); };
             const IlluminationView& in = row.in[c];
             Component& sum = components[c];
             const Lanes weight = w[t * Components + c];
@@ -100,8 +103,9 @@ LUMI_LANES void filterLanes(const AtrousRow& row, const TapPairs<2>& taps, int x
 template <int Components, bool Usual>
 void filterLoop(const AtrousRow& row) {
     const TapPairs<2> taps(row.guide, row.step, kLogSpline);
-    forRegisters(row.guide.width, 2 * row.step, [&](int x) { filterLanes<Components, Usual, false>(row, taps, x); },
-                 [&](int x) { filterLanes<Components, Usual, true>(row, taps, x); });
+    forRegisters(
+        row.guide.width, 2 * row.step, [&](int x) { filterLanes<Components, Usual, false>(row, taps, x); },
+        [&](int x) { filterLanes<Components, Usual, true>(row, taps, x); });
 }
 
 void filterRow(const AtrousRow& row) {

@@ -20,7 +20,7 @@ struct IlluminationOutput {
 struct AtrousRow {
     static constexpr int kMaxComponents = 2;
     GuideRow guide;
-    int step = 1;  ///< pixels between the kernel's taps, 2^level
+    int step = 1;                   ///< pixels between the kernel's taps, 2^level
     bool variancePrefilter = true;  ///< the 3x3 Gaussian of eq. 5
     int components = 1;
     IlluminationView in[kMaxComponents];

@@ -34,7 +34,8 @@ float windowVariance(const Signals& signals, const Image& in, int radius, int x,
     return static_cast<float>(std::max(variance / 3, 0.0));
 }
 
-CrossBilateralRow sharedRow(const Signals& signals, const Image& albedo, const SureSettings& settings, const Image& in) {
+CrossBilateralRow sharedRow(const Signals& signals, const Image& albedo, const SureSettings& settings,
+                            const Image& in) {
     CrossBilateralRow row;
     row.width = in.width();
     row.height = in.height();
@@ -56,27 +57,32 @@ CrossBilateralRow sharedRow(const Signals& signals, const Image& albedo, const S
     return row;
 }
 
-bool runBank(const Signals& signals, const Image& albedo, const SureSettings& settings, const Image& in, SureBank& bank, std::stop_token stop) {
+bool runBank(const Signals& signals, const Image& albedo, const SureSettings& settings, const Image& in, SureBank& bank,
+             std::stop_token stop) {
     const CrossBilateralRow shared = sharedRow(signals, albedo, settings, in);
-    parallelRanges(in.height(), kRows, [&](int64_t begin, int64_t end) {
-        CrossBilateralRow row = shared;
-        std::vector<float> colourScale(static_cast<size_t>(row.width));
-        for (row.y = static_cast<int>(begin); row.y < end; ++row.y) {
-            for (int x = 0; x < row.width; ++x) {
-                const float variance = windowVariance(signals, in, settings.varianceRadius, x, row.y);
-                bank.variance.at(0, x, row.y) = variance;
-                colourScale[static_cast<size_t>(x)] = kLog2E / (2 * settings.sigmaColour * settings.sigmaColour * variance + 1e-12f);
+    parallelRanges(
+        in.height(), kRows,
+        [&](int64_t begin, int64_t end) {
+            CrossBilateralRow row = shared;
+            std::vector<float> colourScale(static_cast<size_t>(row.width));
+            for (row.y = static_cast<int>(begin); row.y < end; ++row.y) {
+                for (int x = 0; x < row.width; ++x) {
+                    const float variance = windowVariance(signals, in, settings.varianceRadius, x, row.y);
+                    bank.variance.at(0, x, row.y) = variance;
+                    colourScale[static_cast<size_t>(x)] =
+                        kLog2E / (2 * settings.sigmaColour * settings.sigmaColour * variance + 1e-12f);
+                }
+                row.colourScale = colourScale.data();
+                row.colourVariance = bank.variance.plane(0).row(row.y);
+                for (int f = 0; f < row.filters; ++f) {
+                    const auto at = static_cast<size_t>(f);
+                    for (int c = 0; c < 3; ++c) row.out[f][c] = bank.filtered[at].plane(c).row(row.y);
+                    row.error[f] = bank.error[at].plane(0).row(row.y);
+                }
+                crossBilateralKernels().filterRow(row);
             }
-            row.colourScale = colourScale.data();
-            row.colourVariance = bank.variance.plane(0).row(row.y);
-            for (int f = 0; f < row.filters; ++f) {
-                const auto at = static_cast<size_t>(f);
-                for (int c = 0; c < 3; ++c) row.out[f][c] = bank.filtered[at].plane(c).row(row.y);
-                row.error[f] = bank.error[at].plane(0).row(row.y);
-            }
-            crossBilateralKernels().filterRow(row);
-        }
-    }, stop);
+        },
+        stop);
     return !stop.stop_requested();
 }
 
@@ -104,8 +110,8 @@ size_t SureBank::bytes() const {
     return sum;
 }
 
-bool chooseBySure(const Signals& signals, const Image& albedo, const SureSettings& settings, const Image& in, SureBank& bank,
-                  Image& out, std::stop_token stop) {
+bool chooseBySure(const Signals& signals, const Image& albedo, const SureSettings& settings, const Image& in,
+                  SureBank& bank, Image& out, std::stop_token stop) {
     const Extent2 extent = in.extent();
     if (bank.variance.extent() != extent) {
         for (Image* image : {&bank.variance, &bank.choice, &bank.scratch}) image->reset(extent, 1);
@@ -119,32 +125,40 @@ bool chooseBySure(const Signals& signals, const Image& albedo, const SureSetting
         bank.filtered[f].fill(0);
         bank.error[f].fill(0);
     }
-    parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
-        for (int y = static_cast<int>(begin); y < end; ++y)
-            for (int x = 0; x < extent.width; ++x) {
-                int best = 0;
-                float least = kInfinity;
-                for (int f = 0; f < filters; ++f) {
-                    const float error = smoothed(signals, bank.error[static_cast<size_t>(f)], 2, x, y);
-                    if (error < least) least = error, best = f;
+    parallelRanges(
+        extent.height, kRows,
+        [&](int64_t begin, int64_t end) {
+            for (int y = static_cast<int>(begin); y < end; ++y)
+                for (int x = 0; x < extent.width; ++x) {
+                    int best = 0;
+                    float least = kInfinity;
+                    for (int f = 0; f < filters; ++f) {
+                        const float error = smoothed(signals, bank.error[static_cast<size_t>(f)], 2, x, y);
+                        if (error < least) least = error, best = f;
+                    }
+                    bank.scratch.at(0, x, y) = static_cast<float>(best);
                 }
-                bank.scratch.at(0, x, y) = static_cast<float>(best);
-            }
-    }, stop);
+        },
+        stop);
     if (stop.stop_requested()) return false;
-    parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
-        for (int y = static_cast<int>(begin); y < end; ++y)
-            for (int x = 0; x < extent.width; ++x) {
-                const float choice = smoothed(signals, bank.scratch, 1, x, y);
-                bank.choice.at(0, x, y) = choice;
-                const int low = std::min(static_cast<int>(choice), filters - 1), high = std::min(low + 1, filters - 1);
-                const float t = choice - static_cast<float>(low);
-                for (int c = 0; c < 3; ++c) {
-                    const float a = bank.filtered[static_cast<size_t>(low)].at(c, x, y), b = bank.filtered[static_cast<size_t>(high)].at(c, x, y);
-                    out.at(c, x, y) = a + t * (b - a);
+    parallelRanges(
+        extent.height, kRows,
+        [&](int64_t begin, int64_t end) {
+            for (int y = static_cast<int>(begin); y < end; ++y)
+                for (int x = 0; x < extent.width; ++x) {
+                    const float choice = smoothed(signals, bank.scratch, 1, x, y);
+                    bank.choice.at(0, x, y) = choice;
+                    const int low = std::min(static_cast<int>(choice), filters - 1),
+                              high = std::min(low + 1, filters - 1);
+                    const float t = choice - static_cast<float>(low);
+                    for (int c = 0; c < 3; ++c) {
+                        const float a = bank.filtered[static_cast<size_t>(low)].at(c, x, y),
+                                    b = bank.filtered[static_cast<size_t>(high)].at(c, x, y);
+                        out.at(c, x, y) = a + t * (b - a);
+                    }
                 }
-            }
-    }, stop);
+        },
+        stop);
     return !stop.stop_requested();
 }
 

@@ -37,7 +37,8 @@ inline void featureExponents(const CrossBilateralRow& row, const TapSpan& tap, i
     }
 }
 
-inline void addTap(const CrossBilateralRow& row, const TapSpan& tap, int first, float spatial, const float* __restrict exponent, Sums& sums) {
+inline void addTap(const CrossBilateralRow& row, const TapSpan& tap, int first, float spatial,
+                   const float* __restrict exponent, Sums& sums) {
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row.y) * row.width;
     const float* __restrict r = row.rgb[0] + at;
     const float* __restrict g = row.rgb[1] + at;
@@ -95,7 +96,8 @@ void filterRow(const CrossBilateralRow& row) {
                 featureExponents(row, tap, first, exponent);
                 for (int f = 0; f < row.filters; ++f)
                     if (i >= -row.radius[f] && i <= row.radius[f] && j >= -row.radius[f] && j <= row.radius[f])
-                        addTap(row, tap, first, row.spatialScale[f] * static_cast<float>(i * i + j * j), exponent, sums[f]);
+                        addTap(row, tap, first, row.spatialScale[f] * static_cast<float>(i * i + j * j), exponent,
+                               sums[f]);
             }
         for (int f = 0; f < row.filters; ++f) finish(row, f, first, last, sums[f]);
     }

@@ -28,8 +28,9 @@ void demodulate(const Signals& signals, DemodulatedFrame& frame) {
             const auto in = [&](Signal signal) { return signals[signal].plane(c).data + begin; };
             const auto to = [&](Image& image) { return image.plane(c).data + begin; };
             demodulationKernels().divide({static_cast<int>(end - begin), in(Signal::Albedo), in(Signal::SpecularAlbedo),
-                                          in(Signal::Emission), in(Signal::Direct), in(Signal::Indirect), to(frame.albedo),
-                                          to(frame.emission), to(frame.direct), to(frame.indirect), bad});
+                                          in(Signal::Emission), in(Signal::Direct), in(Signal::Indirect),
+                                          to(frame.albedo), to(frame.emission), to(frame.direct), to(frame.indirect),
+                                          bad});
         }
         dropped += std::count(bad, bad + (end - begin), 1.0f);
     });
@@ -41,7 +42,8 @@ namespace {
 bool seesSurface(const DemodulatedFrame& frame, int x, int y) {
     float least = 0;
     for (int c = 0; c < 3; ++c)
-        least = std::max({least, frame.albedo.at(c, x, y) - kLeastAlbedo, std::abs(frame.direct.at(c, x, y)), std::abs(frame.indirect.at(c, x, y))});
+        least = std::max({least, frame.albedo.at(c, x, y) - kLeastAlbedo, std::abs(frame.direct.at(c, x, y)),
+                          std::abs(frame.indirect.at(c, x, y))});
     return least > 0;
 }
 
@@ -89,8 +91,9 @@ void remodulate(const DemodulatedFrame& frame, const Image& direct, const Image*
     const Extent2 extent = frame.albedo.extent();
     if (out.extent() != extent || out.channels() != 3) out.reset(extent, 3);
     parallelRanges(static_cast<int64_t>(out.size()), kGrain, [&](int64_t begin, int64_t end) {
-        demodulationKernels().multiply(frame.emission.data() + begin, frame.albedo.data() + begin, direct.data() + begin,
-                                       indirect ? indirect->data() + begin : nullptr, out.data() + begin, static_cast<int>(end - begin));
+        demodulationKernels().multiply(frame.emission.data() + begin, frame.albedo.data() + begin,
+                                       direct.data() + begin, indirect ? indirect->data() + begin : nullptr,
+                                       out.data() + begin, static_cast<int>(end - begin));
     });
 }
 

@@ -24,7 +24,8 @@ struct DemodulationRow {
 struct DemodulationKernels {
     void (*divide)(const DemodulationRow& row);
     /// out = emission + albedo * (direct + indirect); `indirect` may be null.
-    void (*multiply)(const float* emission, const float* albedo, const float* direct, const float* indirect, float* out, int count);
+    void (*multiply)(const float* emission, const float* albedo, const float* direct, const float* indirect, float* out,
+                     int count);
 };
 
 LUMI_KERNELS(DemodulationKernels, demodulation)

@@ -5,8 +5,8 @@
 
 namespace lumi {
 
-bool edgeAvoidingLevel(const Signals& signals, const EdgeAvoidingSettings& settings, int level, const Image& in, Image& out,
-                       std::stop_token stop) {
+bool edgeAvoidingLevel(const Signals& signals, const EdgeAvoidingSettings& settings, int level, const Image& in,
+                       Image& out, std::stop_token stop) {
     constexpr float kLog2E = 1.44269504f;
     const auto scale = [](float sigma) { return kLog2E / (sigma * sigma); };
     const float factor = static_cast<float>(1 << level);
@@ -25,10 +25,13 @@ bool edgeAvoidingLevel(const Signals& signals, const EdgeAvoidingSettings& setti
     shared.colourScale = scale(settings.sigmaColour / factor);
     shared.normalScale = scale(settings.sigmaNormal * factor);
     shared.positionScale = scale(settings.sigmaPosition);
-    parallelRanges(in.height(), 8, [&](int64_t begin, int64_t end) {
-        EdgeAvoidingRow row = shared;
-        for (row.y = static_cast<int>(begin); row.y < end; ++row.y) edgeAvoidingKernels().filterRow(row);
-    }, stop);
+    parallelRanges(
+        in.height(), 8,
+        [&](int64_t begin, int64_t end) {
+            EdgeAvoidingRow row = shared;
+            for (row.y = static_cast<int>(begin); row.y < end; ++row.y) edgeAvoidingKernels().filterRow(row);
+        },
+        stop);
     return !stop.stop_requested();
 }
 

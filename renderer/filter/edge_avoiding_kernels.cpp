@@ -28,8 +28,8 @@ inline void addTap(const EdgeAvoidingRow& row, const TapSpan& tap, int first, fl
     for (int x = tap.begin; x < tap.end; ++x) {
         const std::ptrdiff_t q = x + tap.offset;
         const float angle = squaredDistance(position, x, q) * z[x] * z[x];
-        const float exponent = -(row.colourScale * squaredDistance(rgb, x, q) + row.normalScale * squaredDistance(normal, x, q) +
-                                 row.positionScale * angle);
+        const float exponent = -(row.colourScale * squaredDistance(rgb, x, q) +
+                                 row.normalScale * squaredDistance(normal, x, q) + row.positionScale * angle);
         // The sky neither gives nor takes.
         const float surface = z[x] > 0.0f && z[q] > 0.0f ? h : 0.0f;
         const float w = surface * kernelExp2(exponent);

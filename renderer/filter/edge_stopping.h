@@ -8,8 +8,8 @@ namespace lumi {
 ///     w_n = max(0, n(p) . n(q))^sigma_n                                          (4)
 ///     w_l = exp(-|l(p) - l(q)| / (sigma_l sqrt(g3x3(Var(l(p))) + epsilon)))      (5)
 ///
-/// z is 1/depth, which is affine on a plane in screen space as clip-space depth is. The epsilon of eq. 3 is a thousandth
-/// of z(p); that of eq. 5 stands inside the root, as printed, and is 1e-10.
+/// z is 1/depth, which is affine on a plane in screen space as clip-space depth is. The epsilon of eq. 3 is a
+/// thousandth of z(p); that of eq. 5 stands inside the root, as printed, and is 1e-10.
 struct EdgeStopping {
     float sigmaDepth = 1;
     float sigmaNormal = 128;

@@ -5,8 +5,8 @@
 #include "filter/guide_row.h"
 #include "math/lanes.h"
 
-/// Eqs. 3 and 4 of [Schied17] for the pixels of a register and the taps of a window around them. Include only from kernel
-/// files: each instruction set compiles its own.
+/// Eqs. 3 and 4 of [Schied17] for the pixels of a register and the taps of a window around them. Include only from
+/// kernel files: each instruction set compiles its own.
 namespace lumi {
 namespace {
 
@@ -34,8 +34,13 @@ struct TapPairs {
                 const int dx = i * step, dy = j * step;
                 const bool plus = row.y + dy < row.height, minus = row.y - dy >= 0;
                 if (plus || minus)
-                    pairs[count++] = {dx, static_cast<std::ptrdiff_t>(dy) * row.width + dx, static_cast<float>(dx), static_cast<float>(dy),
-                                      logH[i + Radius] + logH[j + Radius], plus, minus};
+                    pairs[count++] = {dx,
+                                      static_cast<std::ptrdiff_t>(dy) * row.width + dx,
+                                      static_cast<float>(dx),
+                                      static_cast<float>(dy),
+                                      logH[i + Radius] + logH[j + Radius],
+                                      plus,
+                                      minus};
             }
     }
 };
@@ -69,18 +74,19 @@ template <bool Edge>
 struct LaneTap {
     std::ptrdiff_t at;  ///< of the first neighbour in a plane
     Span<Edge> span;
-    Lanes exponent;     ///< log2(h w_z w_n)
+    Lanes exponent;  ///< log2(h w_z w_n)
 };
 
 /// Where log2(cosine)'s series of degree 3 serves: from this sigma_n on it changes w_n by less than 4e-5.
 constexpr float kSeriesSigma = 32;
 
-/// What the pixels of a register from column x on are compared with. Usual: sigma_n is at least kSeriesSigma, and eq. 3's
-/// numerator is as printed. Edge: some pixel or neighbour lies outside of the image's columns.
+/// What the pixels of a register from column x on are compared with. Usual: sigma_n is at least kSeriesSigma, and eq.
+/// 3's numerator is as printed. Edge: some pixel or neighbour lies outside of the image's columns.
 template <bool Usual, bool Edge>
 class EdgeStop {
 public:
-    LUMI_LANES EdgeStop(const GuideRow& row, int x) : row_(row), x_(x), at_(static_cast<std::ptrdiff_t>(row.y) * row.width + x) {
+    LUMI_LANES EdgeStop(const GuideRow& row, int x)
+        : row_(row), x_(x), at_(static_cast<std::ptrdiff_t>(row.y) * row.width + x) {
         const Span<Edge> here = spanOf<Edge>(x, 0, row.width);
         z_ = here.load(row.inverseDepth + at_);
         slopeX_ = here.load(row.slopeX + at_);
@@ -105,11 +111,13 @@ public:
     }
 
 private:
-    LUMI_LANES LaneTap<Edge> compare(int dx, std::ptrdiff_t offset, Lanes expected, Lanes perDistance, Lanes logH) const {
+    LUMI_LANES LaneTap<Edge> compare(int dx, std::ptrdiff_t offset, Lanes expected, Lanes perDistance,
+                                     Lanes logH) const {
         const Span<Edge> span = spanOf<Edge>(x_, dx, row_.width);
         const std::ptrdiff_t q = at_ + offset;
         const Lanes depth = mulAdd(distanceOf(span.load(row_.inverseDepth + q), expected), perDistance, logH);
-        const Lanes nx = span.load(row_.normal[0] + q), ny = span.load(row_.normal[1] + q), nz = span.load(row_.normal[2] + q);
+        const Lanes nx = span.load(row_.normal[0] + q), ny = span.load(row_.normal[1] + q),
+                    nz = span.load(row_.normal[2] + q);
         if constexpr (!Usual) {
             const Lanes cosine = mulAdd(normal_[0], nx, mulAdd(normal_[1], ny, normal_[2] * nz));
             return {q, span, mulAdd(lanes(row_.edges.sigmaNormal), log2OfCosine(cosine), depth)};
@@ -126,7 +134,8 @@ private:
     Lanes z_, slopeX_, slopeY_, perRise_, least_, normal_[3];
 };
 
-/// Calls inner(x) for registers of a row whose neighbours up to `reach` to the side lie in the image, outer(x) for the others.
+/// Calls inner(x) for registers of a row whose neighbours up to `reach` to the side lie in the image, outer(x) for the
+/// others.
 template <class Inner, class Outer>
 inline void forRegisters(int width, int reach, Inner inner, Outer outer) {
     int x = 0;

@@ -16,9 +16,10 @@ float prefilteredVariance(const Image& sampleVariance, Pixel p) {
     return sum;
 }
 
-EdgeWeights edgeWeights(const SurfaceGuide& guide, const AtrousSettings& settings, const Illumination& illumination, Pixel p,
-                        int dx, int dy) {
-    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(p.y) * guide.width + p.x, to = at + static_cast<std::ptrdiff_t>(dy) * guide.width + dx;
+EdgeWeights edgeWeights(const SurfaceGuide& guide, const AtrousSettings& settings, const Illumination& illumination,
+                        Pixel p, int dx, int dy) {
+    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(p.y) * guide.width + p.x,
+                         to = at + static_cast<std::ptrdiff_t>(dy) * guide.width + dx;
     const EdgeStopping& edges = settings.edges;
     EdgeWeights w;
     const float z = guide.inverseDepth[at];

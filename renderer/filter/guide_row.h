@@ -3,7 +3,8 @@
 
 namespace lumi {
 
-/// Row y of the G-buffer that steers a filter, as kernels take it: planes of SurfaceGuide, without gaps between their rows.
+/// Row y of the G-buffer that steers a filter, as kernels take it: planes of SurfaceGuide, without gaps between their
+/// rows.
 struct GuideRow {
     int width = 0, height = 0, y = 0;
     const float* inverseDepth = nullptr;

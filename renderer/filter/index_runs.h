@@ -6,9 +6,9 @@ namespace lumi {
 /// Least pixels for which it pays to read neighbours in a row rather than one by one.
 constexpr int kLeastRun = 32;
 
-/// Cuts [begin, end) into stretches and calls body(from, to, inARow) for each: inARow where follows(k) holds for all k of
-/// (from, to), which says that what pixel k reads from memory lies one behind what pixel k - 1 reads. Motion of smooth
-/// surfaces gives long stretches.
+/// Cuts [begin, end) into stretches and calls body(from, to, inARow) for each: inARow where follows(k) holds for all k
+/// of (from, to), which says that what pixel k reads from memory lies one behind what pixel k - 1 reads. Motion of
+/// smooth surfaces gives long stretches.
 template <class Follows, class Body>
 inline void forIndexRuns(int begin, int end, Follows follows, Body body) {
     int loose = begin;  // start of what is read one by one

@@ -9,21 +9,24 @@
 namespace lumi {
 
 void ReprojectionSettings::describe(ParameterVisitor& v) {
-    v.number("depth-tolerance", depthTolerance,
-             {.label = "Depth tolerance",
-              .min = 0,
-              .max = 1,
-              .help = "A history tap is on another surface when its 1/depth differs by more than this part, beside what the "
-                      "slope explains (sec. 4.1)"});
+    v.number(
+        "depth-tolerance", depthTolerance,
+        {.label = "Depth tolerance",
+         .min = 0,
+         .max = 1,
+         .help = "A history tap is on another surface when its 1/depth differs by more than this part, beside what the "
+                 "slope explains (sec. 4.1)"});
     v.number("normal-tolerance", normalToleranceDeg,
              {.label = "Normal tolerance",
               .min = 0,
               .max = 180,
               .unit = "deg",
               .help = "Largest angle between the object-space normals of a pixel and of its history tap (sec. 4.1)"});
-    v.toggle("wide-fallback", wideFallback,
-             {.label = "3x3 fall-back",
-              .help = "Where all four taps are refused, look among the 3x3 pixels around the point (sec. 4.1: thin geometry)"});
+    v.toggle(
+        "wide-fallback", wideFallback,
+        {.label = "3x3 fall-back",
+         .help =
+             "Where all four taps are refused, look among the 3x3 pixels around the point (sec. 4.1: thin geometry)"});
 }
 
 void SurfaceRecord::reset(Extent2 extent) {
@@ -34,8 +37,11 @@ void SurfaceRecord::reset(Extent2 extent) {
 }
 
 void SurfaceRecord::copyRows(const Signals& signals, int begin, int end) {
-    const int64_t first = static_cast<int64_t>(begin) * signals.extent().width, last = static_cast<int64_t>(end) * signals.extent().width;
-    const auto copy = [&](const auto& from, auto to) { std::copy(from.data + first, from.data + last, to.data + first); };
+    const int64_t first = static_cast<int64_t>(begin) * signals.extent().width,
+                  last = static_cast<int64_t>(end) * signals.extent().width;
+    const auto copy = [&](const auto& from, auto to) {
+        std::copy(from.data + first, from.data + last, to.data + first);
+    };
     copy(signals[Signal::InverseDepth].plane(0), inverseDepth.plane(0));
     for (int c = 0; c < 3; ++c) copy(signals[Signal::ObjectNormal].plane(c), objectNormal.plane(c));
     copy(signals.ids(Signal::ObjectId).plane(0), objectId.plane(0));
@@ -86,7 +92,7 @@ Reprojection::Reprojection(const Signals& signals, const SurfaceRecord& previous
       normalCosine_(std::cos(radians(settings.normalToleranceDeg)) - 1e-5f) {}
 
 int Reprojection::tapRange(int y, int begin, int end, int32_t* const index[4], float* const weight[4],
-                            int32_t* const refusals[4]) const {
+                           int32_t* const refusals[4]) const {
     ReprojectionRow row;
     row.width = signals_.extent().width;
     row.height = signals_.extent().height;
@@ -128,7 +134,8 @@ ReprojectedTaps Reprojection::taps(int x, int y) const {
     ReprojectedRow one(1);
     row(y, x, x + 1, one);
     ReprojectedTaps taps = one.pixel(0);
-    const float px = static_cast<float>(x) + signals_[Signal::Motion].at(0, x, y), py = static_cast<float>(y) + signals_[Signal::Motion].at(1, x, y);
+    const float px = static_cast<float>(x) + signals_[Signal::Motion].at(0, x, y),
+                py = static_cast<float>(y) + signals_[Signal::Motion].at(1, x, y);
     if (std::fabs(px) < 1e6f && std::fabs(py) < 1e6f) {
         taps.x0 = wholeBelow(wholePixel(px));
         taps.y0 = wholeBelow(wholePixel(py));
@@ -149,16 +156,19 @@ ReprojectedTaps Reprojection::widen(int x, int y) const {
     const Image& motion = signals_[Signal::Motion];
     const uint32_t object = signals_.ids(Signal::ObjectId).at(0, x, y);
     const float px = static_cast<float>(x) + motion.at(0, x, y), py = static_cast<float>(y) + motion.at(1, x, y);
-    const bool near = px > -2 && py > -2 && px < static_cast<float>(extent.width) + 1 && py < static_cast<float>(extent.height) + 1;
+    const bool near =
+        px > -2 && py > -2 && px < static_cast<float>(extent.width) + 1 && py < static_cast<float>(extent.height) + 1;
     if (!settings_.wideFallback || object == 0 || !near) return taps;
     const float expected = 1 / (signals_[Signal::Depth].at(0, x, y) + motion.at(2, x, y));
     const Image& slope = signals_[Signal::DepthGradient];
-    const float allowed = settings_.depthTolerance * expected + 2 * (std::fabs(slope.at(0, x, y)) + std::fabs(slope.at(1, x, y)));
+    const float allowed =
+        settings_.depthTolerance * expected + 2 * (std::fabs(slope.at(0, x, y)) + std::fabs(slope.at(1, x, y)));
     const int cx = static_cast<int>(std::floor(px + 0.5f)), cy = static_cast<int>(std::floor(py + 0.5f));
     for (int j = std::max(cy - 1, 0); j <= std::min(cy + 1, extent.height - 1); ++j)
         for (int i = std::max(cx - 1, 0); i <= std::min(cx + 1, extent.width - 1); ++i) {
             float cosine = 0;
-            for (int c = 0; c < 3; ++c) cosine += previous_.objectNormal.at(c, i, j) * signals_[Signal::ObjectNormal].at(c, x, y);
+            for (int c = 0; c < 3; ++c)
+                cosine += previous_.objectNormal.at(c, i, j) * signals_[Signal::ObjectNormal].at(c, x, y);
             const bool alike = previous_.objectId.at(0, i, j) == object && cosine >= normalCosine_ &&
                                std::fabs(previous_.inverseDepth.at(0, i, j) - expected) <= allowed;
             if (alike) taps.index[static_cast<size_t>(taps.count++)] = j * extent.width + i;

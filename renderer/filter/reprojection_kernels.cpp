@@ -75,7 +75,8 @@ void testTap(const ReprojectionRow& row, int tap, int first, int from, int to, c
             outside = (x < 0) | (y < 0) | (x >= width) | (y >= height);
             q = outside ? 0 : y * width + x;
         }
-        const float wx = dx != 0 ? points.fx[k] : 1.0f - points.fx[k], wy = dy != 0 ? points.fy[k] : 1.0f - points.fy[k];
+        const float wx = dx != 0 ? points.fx[k] : 1.0f - points.fx[k],
+                    wy = dy != 0 ? points.fy[k] : 1.0f - points.fy[k];
         const float bilinear = wx * wy;
         const float difference = std::fabs(z[q] - points.inverseDepth[k]);
         const float cosine = px[q] * nx[k] + py[q] * ny[k] + pz[q] * nz[k];
@@ -134,11 +135,15 @@ int tapRow(const ReprojectionRow& row) {
     for (int first = row.begin; first < row.end; first += kBlock) {
         const int last = first + kBlock < row.end ? first + kBlock : row.end;
         findPoints(row, first, last, points);
-        const auto follows = [&](int k) { return points.x0[k] == points.x0[k - 1] + 1 && points.y0[k] == points.y0[k - 1]; };
+        const auto follows = [&](int k) {
+            return points.x0[k] == points.x0[k - 1] + 1 && points.y0[k] == points.y0[k - 1];
+        };
         const auto test = [&](int from, int to, bool inARow) {
-            const bool inside = points.x0[from] >= 0 && points.x0[to - 1] + 1 < row.width && points.y0[from] >= 0 && points.y0[from] + 1 < row.height;
+            const bool inside = points.x0[from] >= 0 && points.x0[to - 1] + 1 < row.width && points.y0[from] >= 0 &&
+                                points.y0[from] + 1 < row.height;
             for (int tap = 0; tap < 4; ++tap)
-                inARow && inside ? testTap<true>(row, tap, first, from, to, points) : testTap<false>(row, tap, first, from, to, points);
+                inARow&& inside ? testTap<true>(row, tap, first, from, to, points)
+                                : testTap<false>(row, tap, first, from, to, points);
         };
         const int count = last - first;
         if (inARow(points.x0, count) && areOne(points.y0, count)) test(0, count, true);

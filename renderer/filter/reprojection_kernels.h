@@ -25,8 +25,8 @@ struct ReprojectionRow {
 };
 
 struct ReprojectionKernels {
-    /// 2x2 bilinear taps, each tested; a refused tap's weight is spread uniformly over the others. Returns the number of
-    /// pixels that none is left of.
+    /// 2x2 bilinear taps, each tested; a refused tap's weight is spread uniformly over the others. Returns the number
+    /// of pixels that none is left of.
     int (*tapRow)(const ReprojectionRow& row);
     /// Each of `count` numbers is one more than the one before.
     bool (*inARow)(const int32_t* numbers, int count);

@@ -30,7 +30,8 @@ bool fillPixel(const Image& image, const std::vector<uint8_t>& known, int x, int
 }
 
 /// Holes around a pixel, each once.
-void addNeighbours(Extent2 extent, uint32_t pixel, const std::vector<uint8_t>& known, std::vector<uint8_t>& listed, std::vector<uint32_t>& ring) {
+void addNeighbours(Extent2 extent, uint32_t pixel, const std::vector<uint8_t>& known, std::vector<uint8_t>& listed,
+                   std::vector<uint32_t>& ring) {
     const int x = static_cast<int>(pixel) % extent.width, y = static_cast<int>(pixel) / extent.width;
     for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, extent.height - 1); ++ny)
         for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, extent.width - 1); ++nx) {
@@ -40,8 +41,8 @@ void addNeighbours(Extent2 extent, uint32_t pixel, const std::vector<uint8_t>& k
         }
 }
 
-/// Gives a colour to pixels that no sample was near: ring after ring, each from what the one before left, so that the work
-/// is that of the holes' number. Returns that number; -1 if stopped.
+/// Gives a colour to pixels that no sample was near: ring after ring, each from what the one before left, so that the
+/// work is that of the holes' number. Returns that number; -1 if stopped.
 int64_t fillHoles(const Image& weights, Image& image, const std::stop_token& stop) {
     const Extent2 extent = image.extent();
     std::vector<uint8_t> known(weights.size());
@@ -75,24 +76,30 @@ int64_t fillHoles(const Image& weights, Image& image, const std::stop_token& sto
 }  // namespace
 
 void ScatteredSettings::describe(ParameterVisitor& v, bool onePerPixel) {
-    v.choice("filter", filter,
-             {.label = "Reconstruction filter",
-              .options = {"gaussian", "box"},
-              .help = "What makes pixels of samples: a Gaussian over 3x3 pixels (sec. 4.4), or the mean of the pixel's own"});
+    v.choice(
+        "filter", filter,
+        {.label = "Reconstruction filter",
+         .options = {"gaussian", "box"},
+         .help =
+             "What makes pixels of samples: a Gaussian over 3x3 pixels (sec. 4.4), or the mean of the pixel's own"});
     v.when(filter == Filter::Gaussian, [&] {
-        v.number("sigma", sigma,
-                 {.label = "Filter width",
-                  .min = 0.1,
-                  .max = 2,
-                  .scale = Scale::Log,
-                  .unit = "px",
-                  .help = "Standard deviation of the Gaussian, which is cut off after 3x3 pixels (sec. 4.4 does not give it)"});
+        v.number(
+            "sigma", sigma,
+            {.label = "Filter width",
+             .min = 0.1,
+             .max = 2,
+             .scale = Scale::Log,
+             .unit = "px",
+             .help =
+                 "Standard deviation of the Gaussian, which is cut off after 3x3 pixels (sec. 4.4 does not give it)"});
     });
     v.when(!onePerPixel || filter == Filter::Gaussian, [&] {
-        v.toggle("tone-mapped", toneMapped,
-                 {.label = "Filter tone-mapped",
-                  .help = "Compress colours by c / (1 + luminance) before the filter and expand them after it (sec. 5 stores "
-                          "tone-mapped colours); off: the filter is linear"});
+        v.toggle(
+            "tone-mapped", toneMapped,
+            {.label = "Filter tone-mapped",
+             .help =
+                 "Compress colours by c / (1 + luminance) before the filter and expand them after it (sec. 5 stores "
+                 "tone-mapped colours); off: the filter is linear"});
     });
 }
 
@@ -104,8 +111,8 @@ float scatteredWeight(const ScatteredSettings& settings, Vec2 off, const Vec3& c
     return tone * std::exp(-glm::dot(off, off) / (2 * settings.sigma * settings.sigma));
 }
 
-int64_t reconstructScattered(const ScatteredSamples& samples, const ScatteredSettings& settings, Image& out, Image& weights,
-                             std::stop_token stop) {
+int64_t reconstructScattered(const ScatteredSamples& samples, const ScatteredSettings& settings, Image& out,
+                             Image& weights, std::stop_token stop) {
     const Extent2 extent = samples.extent;
     if (out.extent() != extent || out.channels() != 3) out.reset(extent, 3);
     if (weights.extent() != extent) weights.reset(extent, 1);
@@ -119,21 +126,24 @@ int64_t reconstructScattered(const ScatteredSamples& samples, const ScatteredSet
     shared.toneMapped = settings.toneMapped;
     shared.falloff = 1 / (2 * settings.sigma * settings.sigma);
     std::atomic<bool> hasHoles{false};
-    parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
-        const size_t stride = 4 * (static_cast<size_t>(extent.width) + 2);
-        std::vector<float> sums(stride * static_cast<size_t>(end - begin), 0.0f);
-        ScatteredRows rows = shared;
-        rows.top = static_cast<int>(begin), rows.bottom = static_cast<int>(end);
-        rows.sums = sums.data();
-        scatteredKernels().splat(rows);
-        for (int y = rows.top; y < rows.bottom; ++y) {
-            float* const planes[3] = {out.plane(0).row(y), out.plane(1).row(y), out.plane(2).row(y)};
-            scatteredKernels().resolve(sums.data() + stride * static_cast<size_t>(y - rows.top), extent.width, planes,
-                                       weights.plane(0).row(y));
-            const float* line = weights.plane(0).row(y);
-            if (std::any_of(line, line + extent.width, [](float w) { return !(w > 0); })) hasHoles = true;
-        }
-    }, stop);
+    parallelRanges(
+        extent.height, kRows,
+        [&](int64_t begin, int64_t end) {
+            const size_t stride = 4 * (static_cast<size_t>(extent.width) + 2);
+            std::vector<float> sums(stride * static_cast<size_t>(end - begin), 0.0f);
+            ScatteredRows rows = shared;
+            rows.top = static_cast<int>(begin), rows.bottom = static_cast<int>(end);
+            rows.sums = sums.data();
+            scatteredKernels().splat(rows);
+            for (int y = rows.top; y < rows.bottom; ++y) {
+                float* const planes[3] = {out.plane(0).row(y), out.plane(1).row(y), out.plane(2).row(y)};
+                scatteredKernels().resolve(sums.data() + stride * static_cast<size_t>(y - rows.top), extent.width,
+                                           planes, weights.plane(0).row(y));
+                const float* line = weights.plane(0).row(y);
+                if (std::any_of(line, line + extent.width, [](float w) { return !(w > 0); })) hasHoles = true;
+            }
+        },
+        stop);
     if (stop.stop_requested()) return -1;
     return hasHoles ? fillHoles(weights, out, stop) : 0;
 }

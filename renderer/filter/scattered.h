@@ -13,8 +13,9 @@ struct ScatteredSettings {
     enum class Filter { Gaussian, Box };
 
     Filter filter = Filter::Gaussian;
-    float sigma = 0.5f;      ///< pixels; the paper does not give it
-    bool toneMapped = true;  ///< filter colours compressed by c / (1 + luminance), so that a bright sample does not outshine its neighbours
+    float sigma = 0.5f;  ///< pixels; the paper does not give it
+    /// filter colours compressed by c / (1 + luminance), so that a bright sample does not outshine its neighbours
+    bool toneMapped = true;
 
     /// `onePerPixel`: each pixel has one sample, and a box leaves it as it is, tone-mapped or not.
     void describe(ParameterVisitor& v, bool onePerPixel = false);
@@ -34,10 +35,10 @@ struct ScatteredSamples {
 /// compressing colours before the filter and expanding their mean comes to.
 float scatteredWeight(const ScatteredSettings& settings, Vec2 off, const Vec3& colour);
 
-/// The image, RGB, scene-linear, and the sum of weights of each pixel (Y). Where that is 0, no sample was near: the pixel
-/// gets the mean of those of its eight neighbours that have a colour, round after round; without any sample all is black.
-/// Sums below 1e-30 count as 0. Returns the number of such pixels; -1 if stopped.
-int64_t reconstructScattered(const ScatteredSamples& samples, const ScatteredSettings& settings, Image& out, Image& weights,
-                             std::stop_token stop);
+/// The image, RGB, scene-linear, and the sum of weights of each pixel (Y). Where that is 0, no sample was near: the
+/// pixel gets the mean of those of its eight neighbours that have a colour, round after round; without any sample all
+/// is black. Sums below 1e-30 count as 0. Returns the number of such pixels; -1 if stopped.
+int64_t reconstructScattered(const ScatteredSamples& samples, const ScatteredSettings& settings, Image& out,
+                             Image& weights, std::stop_token stop);
 
 }  // namespace lumi

@@ -23,8 +23,8 @@ inline void axisWeights(const ScatteredRows& rows, float f, float out[3]) {
     if (rows.box) out[0] = out[2] = 0, out[1] = 1;
 }
 
-/// A sample's colour times its weight, and the weight; false if it plays no part. To filter c / (1 + y) and to expand the
-/// mean m by 1 / (1 - luminance(m)) is to filter c with weights w / (1 + y), which cancels nothing at any radiance.
+/// A sample's colour times its weight, and the weight; false if it plays no part. To filter c / (1 + y) and to expand
+/// the mean m by 1 / (1 - luminance(m)) is to filter c with weights w / (1 + y), which cancels nothing at any radiance.
 inline bool colourOf(const ScatteredRows& rows, uint32_t i, float out[4]) {
     const float* c = rows.colours + 3 * static_cast<std::ptrdiff_t>(i);
     const float r = c[0], g = c[1], b = c[2];

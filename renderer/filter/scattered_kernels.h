@@ -13,8 +13,8 @@ struct ScatteredRows {
     const float* colours = nullptr;   ///< R, G, B of each sample
     const uint8_t* hidden = nullptr;  ///< null: none is
     bool box = false, toneMapped = true;
-    float falloff = 0;                ///< 1 / (2 sigma^2)
-    float* sums = nullptr;            ///< rows of width + 2 pixels, R, G, B and weight of each; 0 before
+    float falloff = 0;      ///< 1 / (2 sigma^2)
+    float* sums = nullptr;  ///< rows of width + 2 pixels, R, G, B and weight of each; 0 before
 };
 
 struct ScatteredKernels {

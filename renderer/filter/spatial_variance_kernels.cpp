@@ -27,32 +27,36 @@ LUMI_LANES void estimateLanes(const SpatialVarianceRow& row, const TapPairs<kRad
     if (anyAbove(least, length)) {
         const EdgeStop<Usual, Edge> edges(row.guide, x);
         for (int i = 0; i < taps.count; ++i)
-            edges.forPair(taps.pairs[i], [&]<size_t Taps>(const std::array<LaneTap<Edge>, Taps>& pair) LUMI_LANES_LAMBDA {
-                Lanes w[Taps];
-                for (size_t t = 0; t < Taps; ++t) w[t] = pair[t].exponent;
-                weightExp2(w);
-                for (size_t t = 0; t < Taps; ++t) {
-                    weight = weight + w[t];
-                    for (int c = 0; c < Components; ++c) {
-                        const Lanes difference = pair[t].span.load(row.mean[c] + pair[t].at) - moments[c].mean;
-                        const Lanes centred = pair[t].span.load(row.centred[c] + pair[t].at);
-                        moments[c].shift = mulAdd(w[t], difference, moments[c].shift);
-                        moments[c].square = mulAdd(w[t], mulAdd(difference, difference, centred), moments[c].square);
+            edges.forPair(
+                taps.pairs[i], [&]<size_t Taps>(const std::array<LaneTap<Edge>, Taps>& pair) LUMI_LANES_LAMBDA {
+                    Lanes w[Taps];
+                    for (size_t t = 0; t < Taps; ++t) w[t] = pair[t].exponent;
+                    weightExp2(w);
+                    for (size_t t = 0; t < Taps; ++t) {
+                        weight = weight + w[t];
+                        for (int c = 0; c < Components; ++c) {
+                            const Lanes difference = pair[t].span.load(row.mean[c] + pair[t].at) - moments[c].mean;
+                            const Lanes centred = pair[t].span.load(row.centred[c] + pair[t].at);
+                            moments[c].shift = mulAdd(w[t], difference, moments[c].shift);
+                            moments[c].square =
+                                mulAdd(w[t], mulAdd(difference, difference, centred), moments[c].square);
+                        }
                     }
-                }
-            });
+                });
     }
     for (int c = 0; c < Components; ++c) {
         const Lanes shift = moments[c].shift / weight, estimate = subMul(moments[c].square / weight, shift, shift);
-        here.store(row.variance[c] + at, selectAbove(least, length, atLeast(estimate, lanes(0.0f)), here.load(row.centred[c] + at)));
+        here.store(row.variance[c] + at,
+                   selectAbove(least, length, atLeast(estimate, lanes(0.0f)), here.load(row.centred[c] + at)));
     }
 }
 
 template <int Components, bool Usual>
 void estimateLoop(const SpatialVarianceRow& row) {
     const TapPairs<kRadius> taps(row.guide, 1, kEqual);
-    forRegisters(row.guide.width, kRadius, [&](int x) { estimateLanes<Components, Usual, false>(row, taps, x); },
-                 [&](int x) { estimateLanes<Components, Usual, true>(row, taps, x); });
+    forRegisters(
+        row.guide.width, kRadius, [&](int x) { estimateLanes<Components, Usual, false>(row, taps, x); },
+        [&](int x) { estimateLanes<Components, Usual, true>(row, taps, x); });
 }
 
 void estimateRow(const SpatialVarianceRow& row) {

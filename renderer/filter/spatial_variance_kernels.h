@@ -17,8 +17,8 @@ struct SpatialVarianceRow {
 };
 
 struct SpatialVarianceKernels {
-    /// Variance of luminance over a 7x7 window weighted by depth and normals [Schied17, sec. 4.2], where historyLength <
-    /// minLength; elsewhere `centred`.
+    /// Variance of luminance over a 7x7 window weighted by depth and normals [Schied17, sec. 4.2], where historyLength
+    /// < minLength; elsewhere `centred`.
     void (*estimateRow)(const SpatialVarianceRow& row);
 };
 

@@ -29,13 +29,15 @@ TaaRow rowOf(const TaaMotion& motion, const TaaSettings& settings, const Image& 
 }  // namespace
 
 void TaaSettings::describe(ParameterVisitor& v) {
-    v.number("alpha", alpha,
-             {.label = "Alpha", .min = 0.01, .max = 1, .scale = Scale::Log, .help = "Weight of the new frame [Karis14]"});
+    v.number(
+        "alpha", alpha,
+        {.label = "Alpha", .min = 0.01, .max = 1, .scale = Scale::Log, .help = "Weight of the new frame [Karis14]"});
     v.choice("history-filter", history,
              {.label = "History filter",
               .options = {"bilinear", "catmull-rom"},
               .help = "How the history is read between pixels; Catmull-Rom keeps it sharp under motion"});
-    v.toggle("clip", clip, {.label = "Clip history", .help = "Clip the history to the colours of the 3x3 neighbourhood"});
+    v.toggle("clip", clip,
+             {.label = "Clip history", .help = "Clip the history to the colours of the 3x3 neighbourhood"});
     v.when(clip, [&] {
         v.number("clip-gamma", gamma,
                  {.label = "Clip width",
@@ -46,8 +48,8 @@ void TaaSettings::describe(ParameterVisitor& v) {
     });
 }
 
-bool antialiasTemporally(const TaaMotion& motion, const TaaSettings& settings, const Image& colour, const Image* previous,
-                         Image& scratch, Image& next, Image& out, std::stop_token stop) {
+bool antialiasTemporally(const TaaMotion& motion, const TaaSettings& settings, const Image& colour,
+                         const Image* previous, Image& scratch, Image& next, Image& out, std::stop_token stop) {
     const Extent2 extent = colour.extent();
     if (previous && previous->extent() != extent) previous = nullptr;
     for (Image* image : {&scratch, &next, &out})
@@ -62,16 +64,19 @@ bool antialiasTemporally(const TaaMotion& motion, const TaaSettings& settings, c
         taaKernels().compressRow(in, to, static_cast<int>(end - begin));
     });
     const TaaRow shared = rowOf(motion, settings, scratch, previous);
-    parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
-        TaaRow row = shared;
-        for (row.y = static_cast<int>(begin); row.y < end; ++row.y) {
-            for (int c = 0; c < 3; ++c) {
-                row.next[c] = next.plane(c).row(row.y);
-                row.out[c] = out.plane(c).row(row.y);
+    parallelRanges(
+        extent.height, kRows,
+        [&](int64_t begin, int64_t end) {
+            TaaRow row = shared;
+            for (row.y = static_cast<int>(begin); row.y < end; ++row.y) {
+                for (int c = 0; c < 3; ++c) {
+                    row.next[c] = next.plane(c).row(row.y);
+                    row.out[c] = out.plane(c).row(row.y);
+                }
+                taaKernels().resolveRow(row);
             }
-            taaKernels().resolveRow(row);
-        }
-    }, stop);
+        },
+        stop);
     return !stop.stop_requested();
 }
 

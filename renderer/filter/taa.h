@@ -8,8 +8,8 @@ namespace lumi {
 
 /// Temporal antialiasing after [Karis14], with variance clipping [Salvi16] in YCoCg: the history is fetched along the
 /// motion of the nearest surface in 3x3, through a Catmull-Rom filter, and clipped to mean +- gamma standard deviations
-/// of the 3x3 neighbourhood; then an exponential average. All of it works on colours compressed by c / (1 + luma), so that
-/// a bright sample does not outshine its neighbours; what comes out is scene-linear again.
+/// of the 3x3 neighbourhood; then an exponential average. All of it works on colours compressed by c / (1 + luma), so
+/// that a bright sample does not outshine its neighbours; what comes out is scene-linear again.
 ///
 /// Differs from the talk: the history's box comes from the moments in place of minimum and maximum; the jittered sample
 /// is not weighted by its distance from the pixel's centre, the average over frames is the pixel's box filter.
@@ -24,9 +24,9 @@ struct TaaSettings {
     void describe(ParameterVisitor& v);
 };
 
-/// Along what the history is fetched: planes X and Y of `motion` in pixels (previous minus current), at that of a pixel's
-/// 3x3 where `nearness` is greatest. That is 1/depth; methods whose motion is that of samples take the square of its
-/// length.
+/// Along what the history is fetched: planes X and Y of `motion` in pixels (previous minus current), at that of a
+/// pixel's 3x3 where `nearness` is greatest. That is 1/depth; methods whose motion is that of samples take the square
+/// of its length.
 struct TaaMotion {
     const Image& motion;
     const Image& nearness;
@@ -35,15 +35,15 @@ struct TaaMotion {
 /// What antialiasTemporally() reads.
 inline SignalSet taaSignals() { return {Signal::Motion, Signal::InverseDepth}; }
 
-/// `colour` (RGB, scene-linear) with `previous` (the last frame's `next`, or null) into `next` (compressed, what the next
-/// frame needs) and `out` (scene-linear; may be `colour`). What is not finite counts as 0 and does not reach a
+/// `colour` (RGB, scene-linear) with `previous` (the last frame's `next`, or null) into `next` (compressed, what the
+/// next frame needs) and `out` (scene-linear; may be `colour`). What is not finite counts as 0 and does not reach a
 /// neighbour's history. `scratch` is any image. Returns false if stopped; outputs are then undefined.
-bool antialiasTemporally(const TaaMotion& motion, const TaaSettings& settings, const Image& colour, const Image* previous,
-                         Image& scratch, Image& next, Image& out, std::stop_token stop);
-inline bool antialiasTemporally(const Signals& signals, const TaaSettings& settings, const Image& colour, const Image* previous,
-                                Image& scratch, Image& next, Image& out, std::stop_token stop) {
-    return antialiasTemporally({signals[Signal::Motion], signals[Signal::InverseDepth]}, settings, colour, previous, scratch, next, out,
-                               stop);
+bool antialiasTemporally(const TaaMotion& motion, const TaaSettings& settings, const Image& colour,
+                         const Image* previous, Image& scratch, Image& next, Image& out, std::stop_token stop);
+inline bool antialiasTemporally(const Signals& signals, const TaaSettings& settings, const Image& colour,
+                                const Image* previous, Image& scratch, Image& next, Image& out, std::stop_token stop) {
+    return antialiasTemporally({signals[Signal::Motion], signals[Signal::InverseDepth]}, settings, colour, previous,
+                               scratch, next, out, stop);
 }
 
 }  // namespace lumi

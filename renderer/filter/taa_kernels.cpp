@@ -28,9 +28,9 @@ void compressRow(const float* const rgb[3], float* const out[3], int count) {
 
 /// What the steps of a block hand on.
 struct Block {
-    alignas(64) int32_t x0[kBlock], y0[kBlock];       ///< of the history's tap up and left of the point
+    alignas(64) int32_t x0[kBlock], y0[kBlock];  ///< of the history's tap up and left of the point
     alignas(64) float fx[kBlock], fy[kBlock];
-    alignas(64) float inside[kBlock];                 ///< 1: the point lay in the previous image
+    alignas(64) float inside[kBlock];  ///< 1: the point lay in the previous image
     alignas(64) float history[3][kBlock], mean[3][kBlock], excess[kBlock];
 };
 
@@ -71,8 +71,10 @@ void findPoints(const TaaRow& row, const Rows& rows, const Range& range, Block& 
     float* __restrict outFx = block.fx + range.at;
     float* __restrict outFy = block.fy + range.at;
     float* __restrict outInside = block.inside + range.at;
-    const float right = static_cast<float>(row.width - 1), bottom = static_cast<float>(row.height - 1), y = static_cast<float>(row.y);
-    const int32_t lines[3] = {static_cast<int32_t>(rows.above), static_cast<int32_t>(rows.here), static_cast<int32_t>(rows.below)};
+    const float right = static_cast<float>(row.width - 1), bottom = static_cast<float>(row.height - 1),
+                y = static_cast<float>(row.y);
+    const int32_t lines[3] = {static_cast<int32_t>(rows.above), static_cast<int32_t>(rows.here),
+                              static_cast<int32_t>(rows.below)};
     const int32_t sides[3] = {range.left, 0, range.right};
     const int32_t here = lines[1] + range.first;
     const float* __restrict z = row.nearness + here;
@@ -121,8 +123,8 @@ inline int32_t clamped(int32_t v, int32_t most) {
     return v > most ? most : v;
 }
 
-/// Adds the J-th of four lines of the history for pixels [begin, end) of the block. InARow: their taps follow each other,
-/// all inside the image's columns.
+/// Adds the J-th of four lines of the history for pixels [begin, end) of the block. InARow: their taps follow each
+/// other, all inside the image's columns.
 template <bool CatmullRom, int J, bool InARow>
 void fetchLine(const TaaRow& row, int begin, int end, Block& block) {
     const int32_t width = row.width, right = row.width - 1, bottom = row.height - 1;
@@ -132,10 +134,13 @@ void fetchLine(const TaaRow& row, int begin, int end, Block& block) {
         float* __restrict sum = block.history[c];
         for (int k = begin; k < end; ++k) {
             const int32_t line = clamped(block.y0[k] + J - 1, bottom) * width, x0 = block.x0[k];
-            const auto tap = [&](int i) { return InARow ? from[base + k + i - 1] : from[line + clamped(x0 + i - 1, right)]; };
+            const auto tap = [&](int i) {
+                return InARow ? from[base + k + i - 1] : from[line + clamped(x0 + i - 1, right)];
+            };
             const float fx = block.fx[k];
             float along = splineWeight<CatmullRom, 1>(fx) * tap(1) + splineWeight<CatmullRom, 2>(fx) * tap(2);
-            if constexpr (CatmullRom) along += splineWeight<CatmullRom, 0>(fx) * tap(0) + splineWeight<CatmullRom, 3>(fx) * tap(3);
+            if constexpr (CatmullRom)
+                along += splineWeight<CatmullRom, 0>(fx) * tap(0) + splineWeight<CatmullRom, 3>(fx) * tap(3);
             sum[k] += splineWeight<CatmullRom, J>(block.fy[k]) * along;
         }
     }
@@ -165,8 +170,12 @@ void fetch(const TaaRow& row, int count, Block& block) {
     const auto follows = [&](int k) { return block.x0[k] == block.x0[k - 1] + 1 && block.y0[k] == block.y0[k - 1]; };
     forIndexRuns(0, count, follows, [&](int begin, int end, bool inARow) {
         const bool inside = block.x0[begin] > 0 && block.x0[end - 1] + 2 < row.width;
-        if (row.catmullRom) inARow && inside ? fetchLines<true, true>(row, begin, end, block) : fetchLines<true, false>(row, begin, end, block);
-        else inARow && inside ? fetchLines<false, true>(row, begin, end, block) : fetchLines<false, false>(row, begin, end, block);
+        if (row.catmullRom)
+            inARow&& inside ? fetchLines<true, true>(row, begin, end, block)
+                            : fetchLines<true, false>(row, begin, end, block);
+        else
+            inARow&& inside ? fetchLines<false, true>(row, begin, end, block)
+                            : fetchLines<false, false>(row, begin, end, block);
     });
 }
 
@@ -182,8 +191,8 @@ void clipToNeighbourhood(const TaaRow& row, const Rows& rows, const Range& range
         const float* __restrict history = block.history[c] + range.at;
         const int l = range.left, r = range.right;
         for (int k = 0; k < range.count; ++k) {
-            const float v[9] = {above[k + l], above[k], above[k + r], here[k + l], here[k],
-                                here[k + r],  below[k + l], below[k], below[k + r]};
+            const float v[9] = {above[k + l], above[k],     above[k + r], here[k + l], here[k],
+                                here[k + r],  below[k + l], below[k],     below[k + r]};
             float sum = 0, squares = 0;
             for (int i = 0; i < 9; ++i) sum += v[i];
             sum *= 1.0f / 9;
@@ -234,7 +243,8 @@ void resolveRow(const TaaRow& row) {
         if (hasHistory) {
             forRanges(row, first, count, [&](const Range& range) { findPoints(row, rows, range, block); });
             fetch(row, count, block);
-            if (row.clip) forRanges(row, first, count, [&](const Range& range) { clipToNeighbourhood(row, rows, range, block); });
+            if (row.clip)
+                forRanges(row, first, count, [&](const Range& range) { clipToNeighbourhood(row, rows, range, block); });
         }
         blend(row, rows, first, count, block, hasHistory);
     }

@@ -46,7 +46,12 @@ class TemporalPass {
 public:
     TemporalPass(const Signals& signals, const TemporalSettings& settings, const std::vector<const Image*>& samples,
                  const TemporalHistory* previous, TemporalHistory& next, const TemporalOptions& options)
-        : signals_(signals), settings_(settings), samples_(samples), previous_(previous), next_(next), options_(options),
+        : signals_(signals),
+          settings_(settings),
+          samples_(samples),
+          previous_(previous),
+          next_(next),
+          options_(options),
           reprojection_(signals, previous ? previous->surface : next.surface, settings.reprojection) {}
 
     void row(int y, TemporalBlock& scratch) const {
@@ -66,9 +71,11 @@ private:
         const int count = last - first;
         if (taps.inARow(count)) integrate(y, first, count, tapsOf(taps, 0, true), scratch);
         else
-            forIndexRuns(0, count, [&taps](int k) { return taps.follows(k); }, [&](int from, int to, bool inARow) {
-                integrate(y, first + from, to - from, tapsOf(taps, from, inARow), scratch);
-            });
+            forIndexRuns(
+                0, count, [&taps](int k) { return taps.follows(k); },
+                [&](int from, int to, bool inARow) {
+                    integrate(y, first + from, to - from, tapsOf(taps, from, inARow), scratch);
+                });
         const bool judged = options_.verdicts.wanted();
         for (int k = 0; k < count && (anyLost || judged); ++k) {
             ReprojectedTaps wide;
@@ -91,9 +98,10 @@ private:
     void integrate(int y, int x, int count, const HistoryTaps& taps, TemporalBlock& scratch) const {
         const int64_t at = static_cast<int64_t>(y) * signals_.extent().width + x;
         const TemporalKernels& kernels = temporalKernels();
-        kernels.lengthRow({count, taps, previous_ ? previous_->length.data() : nullptr, signals_.ids(Signal::ObjectId).data() + at,
-                           settings_.colourAlpha, settings_.momentsAlpha, kLongestHistory, settings_.arithmeticWarmUp,
-                           next_.length.data() + at, scratch.colourAlphas, scratch.momentsAlphas});
+        kernels.lengthRow({count, taps, previous_ ? previous_->length.data() : nullptr,
+                           signals_.ids(Signal::ObjectId).data() + at, settings_.colourAlpha, settings_.momentsAlpha,
+                           kLongestHistory, settings_.arithmeticWarmUp, next_.length.data() + at, scratch.colourAlphas,
+                           scratch.momentsAlphas});
         if (options_.dropped) keepHistory(at, count, scratch);
         for (size_t n = 0; n < samples_.size(); ++n) {
             IntegrationRow row = rowOf(at, n);
@@ -136,7 +144,8 @@ private:
         const float* dropped = options_.dropped->data() + at;
         float* length = next_.length.data() + at;
         for (int k = 0; k < count; ++k)
-            if (dropped[k] != 0 && length[k] > 1) scratch.colourAlphas[k] = scratch.momentsAlphas[k] = 0, length[k] -= 1;
+            if (dropped[k] != 0 && length[k] > 1)
+                scratch.colourAlphas[k] = scratch.momentsAlphas[k] = 0, length[k] -= 1;
     }
 
     /// What was given up is not part of the history any more.
@@ -175,7 +184,8 @@ void TemporalSettings::describe(ParameterVisitor& v) {
                   .scale = Scale::Log,
                   .help = "Weight of the new sample in the luminance moments (sec. 4.2)"});
     v.toggle("arithmetic-warm-up", arithmeticWarmUp,
-             {.label = "Arithmetic warm-up", .help = "Average the first frames in equal parts, 1/n, until 1/n falls below alpha"});
+             {.label = "Arithmetic warm-up",
+              .help = "Average the first frames in equal parts, 1/n, until 1/n falls below alpha"});
     reprojection.describe(v);
 }
 
@@ -183,7 +193,8 @@ void TemporalHistory::reset(Extent2 extent, int count, bool moments) {
     surface.reset(extent);
     const Extent2 ofMoments = moments ? extent : Extent2{};
     const auto fits = [&](const TemporalComponent& c) { return c.mean.extent() == ofMoments; };
-    if (length.extent() == extent && components.size() == static_cast<size_t>(count) && std::all_of(components.begin(), components.end(), fits))
+    if (length.extent() == extent && components.size() == static_cast<size_t>(count) &&
+        std::all_of(components.begin(), components.end(), fits))
         return;
     components.resize(static_cast<size_t>(count));
     for (TemporalComponent& component : components) {
@@ -200,22 +211,27 @@ size_t TemporalHistory::bytes() const {
     return sum;
 }
 
-bool filterTemporally(const Signals& signals, const TemporalSettings& settings, const std::vector<const Image*>& samples,
-                      const TemporalHistory* previous, TemporalHistory& next, std::stop_token stop, const TemporalOptions& options) {
+bool filterTemporally(const Signals& signals, const TemporalSettings& settings,
+                      const std::vector<const Image*>& samples, const TemporalHistory* previous, TemporalHistory& next,
+                      std::stop_token stop, const TemporalOptions& options) {
     const Extent2 extent = signals.extent();
     assert(options.loss.empty() || options.loss.size() == samples.size());
     next.reset(extent, static_cast<int>(samples.size()), settings.moments);
-    if (previous && (previous->length.extent() != extent || previous->components.size() != samples.size())) previous = nullptr;
+    if (previous && (previous->length.extent() != extent || previous->components.size() != samples.size()))
+        previous = nullptr;
     if (options.verdicts.verdict) options.verdicts.verdict->reset(extent, 1);
     if (options.verdicts.refusals) options.verdicts.refusals->reset(extent, 4);
     for (Image* plane : options.luminance)
         if (plane->extent() != extent) plane->reset(extent, 1);
     const TemporalPass pass(signals, settings, samples, previous, next, options);
-    parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
-        TemporalBlock scratch;
-        next.surface.copyRows(signals, static_cast<int>(begin), static_cast<int>(end));
-        for (int y = static_cast<int>(begin); y < end; ++y) pass.row(y, scratch);
-    }, stop);
+    parallelRanges(
+        extent.height, kRows,
+        [&](int64_t begin, int64_t end) {
+            TemporalBlock scratch;
+            next.surface.copyRows(signals, static_cast<int>(begin), static_cast<int>(end));
+            for (int y = static_cast<int>(begin); y < end; ++y) pass.row(y, scratch);
+        },
+        stop);
     return !stop.stop_requested();
 }
 

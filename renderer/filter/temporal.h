@@ -23,9 +23,9 @@ struct TemporalSettings {
 
 /// One component (direct, indirect or both together) as it is carried from frame to frame.
 struct TemporalComponent {
-    Image colour;           ///< RGB, integrated, or what a spatial filter feeds back in its place
-    Image mean;             ///< first moment of luminance; empty, like the next, where nobody uses moments
-    Image sampleVariance;   ///< sigma'^2 = mu2' - mu1'^2, the variance of one sample
+    Image colour;          ///< RGB, integrated, or what a spatial filter feeds back in its place
+    Image mean;            ///< first moment of luminance; empty, like the next, where nobody uses moments
+    Image sampleVariance;  ///< sigma'^2 = mu2' - mu1'^2, the variance of one sample
 };
 
 struct TemporalHistory {
@@ -41,20 +41,21 @@ using HistoryLoss = std::vector<const Image*>;
 
 /// What the temporal filter may be given, or asked for, beside its settings; images are Y planes of the frame's extent.
 struct TemporalOptions {
-    /// How much of the history to give up, lambda from 0 (none) to 1 (all): one a component, or none. The new sample's weight is
-    /// alpha + (1 - alpha) lambda, and the history's length shrinks by the largest lambda of the components.
+    /// How much of the history to give up, lambda from 0 (none) to 1 (all): one a component, or none. The new sample's
+    /// weight is alpha + (1 - alpha) lambda, and the history's length shrinks by the largest lambda of the components.
     HistoryLoss loss{};
     /// Where the luminance of the integrated colours goes: one a component, or none.
     std::vector<Image*> luminance{};
-    /// Not 0 where the sample is no measurement, as it was not finite: with a history it counts nothing, and the history does not
-    /// grow. Null: there are none.
+    /// Not 0 where the sample is no measurement, as it was not finite: with a history it counts nothing, and the
+    /// history does not grow. Null: there are none.
     const Image* dropped = nullptr;
     VerdictImages verdicts{};
 };
 
 /// Integrates `samples` (RGB, finite, one a component) with `previous` (null: no history) into `next`. Returns false if
 /// stopped; `next` is then undefined.
-bool filterTemporally(const Signals& signals, const TemporalSettings& settings, const std::vector<const Image*>& samples,
-                      const TemporalHistory* previous, TemporalHistory& next, std::stop_token stop, const TemporalOptions& options = {});
+bool filterTemporally(const Signals& signals, const TemporalSettings& settings,
+                      const std::vector<const Image*>& samples, const TemporalHistory* previous, TemporalHistory& next,
+                      std::stop_token stop, const TemporalOptions& options = {});
 
 }  // namespace lumi

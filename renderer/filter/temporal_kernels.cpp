@@ -29,7 +29,8 @@ void lengths(const HistoryLengthRow& row) {
         sum = sum < longest ? sum : longest;
         length[x] = object[x] == 0 ? 0.0f : sum;
         const float least = object[x] == 0 ? 0.0f : warmUp / sum;
-        const float a = row.colourAlpha > least ? row.colourAlpha : least, b = row.momentsAlpha > least ? row.momentsAlpha : least;
+        const float a = row.colourAlpha > least ? row.colourAlpha : least,
+                    b = row.momentsAlpha > least ? row.momentsAlpha : least;
         colour[x] = weights > 0.0f ? a : 1.0f;
         moments[x] = weights > 0.0f ? b : 1.0f;
     }

@@ -5,10 +5,11 @@
 
 namespace lumi {
 
-/// The taps of a row of pixels in the previous frame's planes. Weights of a pixel sum to 1, or are all 0: it has no history.
+/// The taps of a row of pixels in the previous frame's planes. Weights of a pixel sum to 1, or are all 0: it has no
+/// history.
 struct HistoryTaps {
     static constexpr int kMost = 9;
-    int taps = 0;  ///< 0 (there is no previous frame), 4 or 9
+    int taps = 0;         ///< 0 (there is no previous frame), 4 or 9
     bool inARow = false;  ///< each index is one more than that of the pixel before
     const int32_t* index[kMost];
     const float* weight[kMost];

@@ -77,9 +77,8 @@ std::string allNames() {
 }  // namespace
 
 const std::vector<const char*>& colourMapNames() {
-    static const std::vector<const char*> names = {"viridis", "turbo",  "magma", "gray",
-                                                   "signed",  "cyclic", "ids",   "wheel",
-                                                   "motion"};
+    static const std::vector<const char*> names = {"viridis", "turbo", "magma", "gray",  "signed",
+                                                   "cyclic",  "ids",   "wheel", "motion"};
     return names;
 }
 

@@ -45,21 +45,16 @@ Plan planFor(std::string_view channels, const std::string& defaultMap, const Dis
         plan.planes = {single, single, single};
         const bool component = count > 1 && !colour;
         // One component of a vector has a sign; a hue without a second component says nothing.
-        if (component && (none || wheel))
-            plan.map = "signed";
-        else if (wheel)
-            plan.map = "cyclic";
+        if (component && (none || wheel)) plan.map = "signed";
+        else if (wheel) plan.map = "cyclic";
         plan.style = plan.map == "none" ? Style::Tone : Style::Plane;
         plan.skyIsBlack = channels == "Z";
         return plan;
     }
     plan.planes = {0, 1, count > 2 ? 2 : 1};
-    if (colour)
-        plan.style = none ? Style::Tone : Style::Luminance;
-    else if (wheel)
-        plan.style = Style::Wheel;
-    else
-        plan.style = none ? Style::Range : Style::Length;
+    if (colour) plan.style = none ? Style::Tone : Style::Luminance;
+    else if (wheel) plan.style = Style::Wheel;
+    else plan.style = none ? Style::Range : Style::Length;
     if (colour && wheel) plan.map = "cyclic";
     return plan;
 }
@@ -75,25 +70,22 @@ struct ScalarAt {
     bool twoOnly;
     float operator()(int64_t i) const {
         switch (plan.style) {
-            case Style::Luminance:
-                return luminance(Vec3(a[i], b[i], c[i]));
-            case Style::Wheel:
-                return std::sqrt(a[i] * a[i] + b[i] * b[i]);
-            case Style::Length:
-                return std::sqrt(a[i] * a[i] + b[i] * b[i] + (twoOnly ? 0 : c[i] * c[i]));
+            case Style::Luminance: return luminance(Vec3(a[i], b[i], c[i]));
+            case Style::Wheel: return std::sqrt(a[i] * a[i] + b[i] * b[i]);
+            case Style::Length: return std::sqrt(a[i] * a[i] + b[i] * b[i] + (twoOnly ? 0 : c[i] * c[i]));
             case Style::Range: {
                 // The component furthest from 0.
                 const float x = a[i], y = b[i], z = twoOnly ? 0 : c[i];
                 const float xy = std::abs(x) >= std::abs(y) ? x : y;
                 return std::abs(xy) >= std::abs(z) ? xy : z;
             }
-            default:
-                return a[i];
+            default: return a[i];
         }
     }
 };
 
-ValueRange rangeFor(const Plan& plan, const ScalarAt& value, int64_t count, const DisplaySettings& settings, const std::optional<ValueRange>& own) {
+ValueRange rangeFor(const Plan& plan, const ScalarAt& value, int64_t count, const DisplaySettings& settings,
+                    const std::optional<ValueRange>& own) {
     if (plan.style == Style::Tone) return {0, 1};
     if (plan.map == "ids") return {0, 1};
     if (!settings.autoRange) return {settings.low, settings.high};

@@ -17,8 +17,8 @@ enum class ToneCurve { Clamp, Reinhard, Aces, AgX };
 struct DisplaySettings {
     float exposureEv = 0;
     ToneCurve curve = ToneCurve::Aces;
-    std::string colourMap =
-        "auto";  ///< "auto" (the buffer's own), "none", "viridis", "turbo", "magma", "signed", "cyclic", "ids", "gray"
+    /// "auto" (the buffer's own), "none", "viridis", "turbo", "magma", "signed", "cyclic", "ids", "gray"
+    std::string colourMap = "auto";
     bool autoRange = true;  ///< the buffer's own, or the 1st to 99th percentile of finite values
     float low = 0, high = 1;
     int channel = -1;  ///< -1 all, 0.. one channel; in parameters "all", "1", ...
@@ -32,13 +32,14 @@ struct DisplayInfo {
     bool toneMapped = false;  ///< exposure and tone curve were applied; else the range was
     std::string colourMap;
     float low = 0, high = 1;
-    int64_t nonFinite =
-        0;  ///< pixels with NaN or infinity (NaN shows magenta, infinity cyan; +inf depth is the sky, black)
+    /// pixels with NaN or infinity (NaN shows magenta, infinity cyan; +inf depth is the sky, black)
+    int64_t nonFinite = 0;
 };
 
-/// RGBA8 of a buffer. `channels` is SignalInfo::channels ("RGB", "XYZ", "Y", ...); `defaultMap` is used for "auto".
-/// RGB with map "none" is tone-mapped; XYZ shows 0.5 + 0.5 v; XY and motion show a colour wheel with maps "wheel" and "motion".
-/// `own`: the range that an automatic one is, where the buffer has one. Vectorised, on all threads; off the UI thread.
+/// RGBA8 of a buffer. `channels` is SignalInfo::channels ("RGB", "XYZ", "Y", ...); `defaultMap` is used for "auto". RGB
+/// with map "none" is tone-mapped; XYZ shows 0.5 + 0.5 v; XY and motion show a colour wheel with maps "wheel" and
+/// "motion". `own`: the range that an automatic one is, where the buffer has one. Vectorised, on all threads; off the
+/// UI thread.
 DisplayInfo convert(const Image& image, const char* channels, const char* defaultMap, const DisplaySettings& settings,
                     Image8& out, const std::optional<ValueRange>& own = {});
 /// Ids get well-separated colours; 0 is black.

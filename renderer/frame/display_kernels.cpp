@@ -41,12 +41,8 @@ inline uint32_t packed(Rgb c) {
     return byte(c.r) | byte(c.g) << 8 | byte(c.b) << 16 | 0xff000000u;
 }
 
-inline int32_t isNan(float x) {
-    return x != x ? 1 : 0;
-}
-inline int32_t isInfinite(float x) {
-    return std::fabs(x) > kLargest ? 1 : 0;
-}
+inline int32_t isNan(float x) { return x != x ? 1 : 0; }
+inline int32_t isInfinite(float x) { return std::fabs(x) > kLargest ? 1 : 0; }
 
 inline Rgb multiply(const float (&m)[9], Rgb v) {
     return {m[0] * v.r + m[1] * v.g + m[2] * v.b, m[3] * v.r + m[4] * v.g + m[5] * v.b,
@@ -55,9 +51,7 @@ inline Rgb multiply(const float (&m)[9], Rgb v) {
 
 // The curves; toneMap() in tone_curve.cpp is their definition.
 
-inline Rgb clampCurve(Rgb c) {
-    return c;
-}
+inline Rgb clampCurve(Rgb c) { return c; }
 
 inline Rgb reinhardCurve(Rgb c) {
     const float scale = 1.0f / (1.0f + (0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b));
@@ -143,13 +137,17 @@ int tone(const float* r, const float* g, const float* b, int count, float scale,
     const auto toSrgb = [](float x) { return srgb(x); };
     switch (curve) {
         case 1:
-            return toneRow(r, g, b, count, scale, out, [](Rgb c) { return reinhardCurve(c); }, toSrgb);
+            return toneRow(
+                r, g, b, count, scale, out, [](Rgb c) { return reinhardCurve(c); }, toSrgb);
         case 2:
-            return toneRow(r, g, b, count, scale, out, [](Rgb c) { return acesCurve(c); }, toSrgb);
+            return toneRow(
+                r, g, b, count, scale, out, [](Rgb c) { return acesCurve(c); }, toSrgb);
         case 3:
-            return toneRow(r, g, b, count, scale, out, [](Rgb c) { return agxCurve(c); }, [](float x) { return agxEncode(x); });
+            return toneRow(
+                r, g, b, count, scale, out, [](Rgb c) { return agxCurve(c); }, [](float x) { return agxEncode(x); });
         default:
-            return toneRow(r, g, b, count, scale, out, [](Rgb c) { return clampCurve(c); }, toSrgb);
+            return toneRow(
+                r, g, b, count, scale, out, [](Rgb c) { return clampCurve(c); }, toSrgb);
     }
 }
 

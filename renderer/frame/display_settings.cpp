@@ -39,11 +39,13 @@ void DisplaySettings::describe(ParameterVisitor& v) {
                    .redo = Redo::Display});
     colourMap = maps[static_cast<size_t>(index)];
 
-    v.toggle("auto-range", autoRange,
-             {.label = "Automatic range",
-              .help = "The map spans the buffer's own range where it has one (codes, weights, counts), else the 1st to the 99th "
-                      "percentile of the finite values",
-              .redo = Redo::Display});
+    v.toggle(
+        "auto-range", autoRange,
+        {.label = "Automatic range",
+         .help =
+             "The map spans the buffer's own range where it has one (codes, weights, counts), else the 1st to the 99th "
+             "percentile of the finite values",
+         .redo = Redo::Display});
     v.when(!autoRange, [&] {
         v.number(
             "low", low,

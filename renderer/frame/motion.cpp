@@ -7,9 +7,7 @@
 namespace lumi {
 namespace {
 
-Vec3 finiteOrZero(const Vec3& v) {
-    return isFinite(v) ? v : Vec3(0);
-}
+Vec3 finiteOrZero(const Vec3& v) { return isFinite(v) ? v : Vec3(0); }
 
 /// The camera at the world's origin: it sees directions as points.
 CameraPose atOrigin(CameraPose camera) {

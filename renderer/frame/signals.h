@@ -12,18 +12,18 @@ namespace lumi {
 /// THE contract between tracing and reconstruction: what one noisy frame is made of.
 ///
 /// Space and units: linear Rec.709 radiance (W/(m^2 sr)); world space is right-handed, +Y up, metres; pixels have their
-/// origin top-left. Colours are means over the frame's samples. Geometry (normal, depth, position, motion, ids, surface)
-/// is that of the pixel's first sample, at the first surface the camera ray meets, mirrors and glass included: features
-/// never pass through specular surfaces.
+/// origin top-left. Colours are means over the frame's samples. Geometry (normal, depth, position, motion, ids,
+/// surface) is that of the pixel's first sample, at the first surface the camera ray meets, mirrors and glass included:
+/// features never pass through specular surfaces.
 ///
 ///     noisy = emission + albedo * (directDiffuse + indirectDiffuse)
 ///                      + specularAlbedo * (directSpecular + indirectSpecular)
 ///
 /// holds in every pixel up to rounding. The four are demodulated illumination. Where a channel of albedo (or of
-/// specularAlbedo) would be below 0.01, that term is stored undivided with albedo 1 in that channel; no other albedo of a surface is 1.
-/// "Specular" is every lobe but the diffuse one, transmission included. "Direct" is light that meets one surface
-/// between emitter and camera; "indirect" is all else. Emission is light that reaches the camera unscattered: emitters
-/// and the sky seen directly.
+/// specularAlbedo) would be below 0.01, that term is stored undivided with albedo 1 in that channel; no other albedo of
+/// a surface is 1. "Specular" is every lobe but the diffuse one, transmission included. "Direct" is light that meets
+/// one surface between emitter and camera; "indirect" is all else. Emission is light that reaches the camera
+/// unscattered: emitters and the sky seen directly.
 enum class Signal : uint8_t {
     Noisy,             ///< RGB, the frame's radiance
     Emission,          ///< RGB
@@ -44,20 +44,20 @@ enum class Signal : uint8_t {
     InverseDepth,      ///< Z, 1/depth; 0 on the sky
     DepthGradient,     ///< XY, screen derivatives per pixel of 1/depth on the surface's tangent plane; 0 on the sky
     Position,          ///< XYZ world; 0 on the sky
-    Motion,            ///< XYZ: previous pixel minus current pixel (X, Y), view depth (Z); far off the image where the point was behind
-    Roughness,         ///< Y in [0,1], the user's roughness; 1 on the sky
-    ObjectId,          ///< UINT: 1 + instance index; 0 on the sky
-    MaterialId,        ///< UINT: 1 + material index; 0 on the sky
-    Surface,           ///< UINT x4: instance, primitive, bits of barycentric u, bits of barycentric v
+    Motion,  ///< XYZ: previous pixel minus current pixel (X, Y), view depth (Z); far off the image where the point was behind
+    Roughness,   ///< Y in [0,1], the user's roughness; 1 on the sky
+    ObjectId,    ///< UINT: 1 + instance index; 0 on the sky
+    MaterialId,  ///< UINT: 1 + material index; 0 on the sky
+    Surface,     ///< UINT x4: instance, primitive, bits of barycentric u, bits of barycentric v
     Count
 };
 constexpr int kSignalCount = static_cast<int>(Signal::Count);
 
 struct SignalInfo {
-    const char* name;       ///< camelCase, as in files and views
-    const char* channels;   ///< one letter each: "RGB", "XYZ", "XY", "Y", "Z", "IPUV"
-    bool isId;              ///< stored as uint32
-    const char* unit;       ///< "W/(m^2 sr)", "m", "px", ""
+    const char* name;      ///< camelCase, as in files and views
+    const char* channels;  ///< one letter each: "RGB", "XYZ", "XY", "Y", "Z", "IPUV"
+    bool isId;             ///< stored as uint32
+    const char* unit;      ///< "W/(m^2 sr)", "m", "px", ""
     const char* help;
 };
 const SignalInfo& signalInfo(Signal signal);
@@ -108,8 +108,8 @@ public:
     const IdImage& ids(Signal s) const { return ids_[static_cast<size_t>(s)]; }
     IdImage& ids(Signal s) { return ids_[static_cast<size_t>(s)]; }
 
-    /// Sum over the frame's samples of their radiance, RGB, in double over aligned power-of-two blocks: what progressive
-    /// means add up so that any split of the samples gives the same bits. Present whenever Noisy is.
+    /// Sum over the frame's samples of their radiance, RGB, in double over aligned power-of-two blocks: what
+    /// progressive means add up so that any split of the samples gives the same bits. Present whenever Noisy is.
     const ImageOf<double>& noisySum() const { return noisySum_; }
     ImageOf<double>& noisySum() { return noisySum_; }
 

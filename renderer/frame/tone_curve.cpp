@@ -13,9 +13,7 @@ Vec3 multiply(const float (&m)[9], const Vec3& v) {
 }
 
 /// Luminance L becomes L / (1 + L) [Reinhard 2002, eq. 3]; the colour keeps its chromaticity until a channel passes 1.
-Vec3 reinhard(const Vec3& c) {
-    return c * (1 / (1 + luminance(c)));
-}
+Vec3 reinhard(const Vec3& c) { return c * (1 / (1 + luminance(c))); }
 
 Vec3 aces(const Vec3& c) {
     const Vec3 v = multiply(kAcesIn, c * kAcesExposure);
@@ -45,17 +43,10 @@ Vec3 agx(const Vec3& c) {
 Vec3 toneMap(const Vec3& linear, ToneCurve curve) {
     Vec3 c = glm::min(glm::max(linear, Vec3(0)), Vec3(kBrightest));
     switch (curve) {
-        case ToneCurve::Clamp:
-            break;
-        case ToneCurve::Reinhard:
-            c = reinhard(c);
-            break;
-        case ToneCurve::Aces:
-            c = aces(c);
-            break;
-        case ToneCurve::AgX:
-            c = agx(c);
-            break;
+        case ToneCurve::Clamp: break;
+        case ToneCurve::Reinhard: c = reinhard(c); break;
+        case ToneCurve::Aces: c = aces(c); break;
+        case ToneCurve::AgX: c = agx(c); break;
     }
     return glm::clamp(c, Vec3(0), Vec3(1));
 }

@@ -20,9 +20,7 @@ Framebuffer::Framebuffer(const GlFunctions& gl, Extent2 extent) : gl_(gl), colou
     }
 }
 
-Framebuffer::~Framebuffer() {
-    gl_.DeleteFramebuffers(1, &id_);
-}
+Framebuffer::~Framebuffer() { gl_.DeleteFramebuffers(1, &id_); }
 
 void Framebuffer::bind() const {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, id_);

@@ -64,8 +64,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<HeadlessContext> createOsMesaContext() {
-    return std::make_unique<OsMesaContext>();
-}
+std::unique_ptr<HeadlessContext> createOsMesaContext() { return std::make_unique<OsMesaContext>(); }
 
 }  // namespace lumi

@@ -54,8 +54,6 @@ Program::Program(const GlFunctions& gl, const std::string& name, const std::stri
     throwBadInput({.what = "shaders do not link: " + log, .where = name, .expected = "", .found = ""});
 }
 
-Program::~Program() {
-    gl_.DeleteProgram(id_);
-}
+Program::~Program() { gl_.DeleteProgram(id_); }
 
 }  // namespace lumi

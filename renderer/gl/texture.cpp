@@ -12,9 +12,7 @@ GlTexture::GlTexture(const GlFunctions& gl, GlFilter filter) : gl_(gl) {
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
-GlTexture::~GlTexture() {
-    gl_.DeleteTextures(1, &id_);
-}
+GlTexture::~GlTexture() { gl_.DeleteTextures(1, &id_); }
 
 void GlTexture::upload(Extent2 extent, const uint8_t* rgba) {
     gl_.BindTexture(GL_TEXTURE_2D, id_);

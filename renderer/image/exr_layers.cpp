@@ -55,8 +55,7 @@ Image ExrLayers::image(std::string_view layer, std::string_view letters) const {
         if (found[c]->type == ExrType::Uint)
             std::transform(found[c]->ids.begin(), found[c]->ids.end(), target,
                            [](uint32_t id) { return static_cast<float>(id); });
-        else
-            std::copy(found[c]->floats.begin(), found[c]->floats.end(), target);
+        else std::copy(found[c]->floats.begin(), found[c]->floats.end(), target);
     }
     return result;
 }

@@ -87,9 +87,7 @@ Resolved resolve(std::string_view name) {
 
 }  // namespace
 
-std::string canonicalChannel(std::string_view name) {
-    return resolve(name).name;
-}
+std::string canonicalChannel(std::string_view name) { return resolve(name).name; }
 
 const ExrChannel* ExrLayers::find(std::string_view name) const {
     if (const auto exact = channels.find(std::string(name)); exact != channels.end()) return &exact->second;

@@ -27,9 +27,7 @@ constexpr int64_t kMaxSide = 65536;
 /// No compressor of the format packs more pixels into a byte than this; beyond it the header lies.
 constexpr uint64_t kMaxRatio = 20000;
 
-int64_t side(int low, int high) {
-    return int64_t(high) - low + 1;
-}
+int64_t side(int low, int high) { return int64_t(high) - low + 1; }
 
 Mat4 matrixOf(const Imath::M44f& m) {
     Mat4 result;
@@ -51,10 +49,8 @@ struct StoredChannel {
         columns = static_cast<int>(side(data.min.x, data.max.x) / xSampling);
         rows = static_cast<int>(side(data.min.y, data.max.y) / ySampling);
         const size_t count = static_cast<size_t>(columns) * static_cast<size_t>(rows);
-        if (values.type == ExrType::Uint)
-            values.ids.resize(count);
-        else
-            values.floats.resize(count);
+        if (values.type == ExrType::Uint) values.ids.resize(count);
+        else values.floats.resize(count);
     }
 
     Imf::Slice slice(const Imath::Box2i& data) {
@@ -70,20 +66,16 @@ struct StoredChannel {
         ExrChannel result{values.type, {}, {}};
         const int64_t width = side(display.min.x, display.max.x), height = side(display.min.y, display.max.y);
         const auto count = static_cast<size_t>(width * height);
-        if (values.type == ExrType::Uint)
-            result.ids.resize(count);
-        else
-            result.floats.resize(count);
+        if (values.type == ExrType::Uint) result.ids.resize(count);
+        else result.floats.resize(count);
         for (int64_t y = std::max(display.min.y, data.min.y); y <= std::min(display.max.y, data.max.y); ++y) {
             for (int64_t x = std::max(display.min.x, data.min.x); x <= std::min(display.max.x, data.max.x); ++x) {
                 const int64_t column = std::min<int64_t>((x - data.min.x) / xSampling, columns - 1);
                 const int64_t row = std::min<int64_t>((y - data.min.y) / ySampling, rows - 1);
                 const auto from = static_cast<size_t>(row * columns + column);
                 const auto to = static_cast<size_t>((y - display.min.y) * width + (x - display.min.x));
-                if (values.type == ExrType::Uint)
-                    result.ids[to] = values.ids[from];
-                else
-                    result.floats[to] = values.floats[from];
+                if (values.type == ExrType::Uint) result.ids[to] = values.ids[from];
+                else result.floats[to] = values.floats[from];
             }
         }
         return result;
@@ -211,8 +203,6 @@ ExrLayers decodeExr(std::span<const uint8_t> bytes, const std::string& name) {
     }
 }
 
-ExrLayers readExr(const std::filesystem::path& path) {
-    return decodeExr(readFile(path), path.string());
-}
+ExrLayers readExr(const std::filesystem::path& path) { return decodeExr(readFile(path), path.string()); }
 
 }  // namespace lumi

@@ -152,8 +152,6 @@ private:
 
 }  // namespace
 
-Image decodeHdr(std::span<const uint8_t> bytes, const std::string& name) {
-    return HdrReader(bytes, name).read();
-}
+Image decodeHdr(std::span<const uint8_t> bytes, const std::string& name) { return HdrReader(bytes, name).read(); }
 
 }  // namespace lumi

@@ -42,8 +42,8 @@ private:
             int count = 0;
             for (size_t i = 1; i <= 16; ++i) count += byteAt(at + i);
             if (count > 256)
-                throwBadInput({"not a readable image (damaged JPEG: a Huffman table of too many codes)", name_, "at most 256",
-                               std::to_string(count)});
+                throwBadInput({"not a readable image (damaged JPEG: a Huffman table of too many codes)", name_,
+                               "at most 256", std::to_string(count)});
             at += 17 + static_cast<size_t>(count);
             left -= 17 + count;
         }

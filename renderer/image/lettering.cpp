@@ -22,7 +22,8 @@ constexpr uint32_t kReplacement = 0xfffd;
 /// The files of a weight, the best first (Debian's fonts-inter, fonts-dejavu-core).
 std::vector<const char*> filesOf(Lettering::Weight weight) {
     if (weight == Lettering::Weight::Strong)
-        return {"/usr/share/fonts/opentype/inter/Inter-SemiBold.otf", "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf"};
+        return {"/usr/share/fonts/opentype/inter/Inter-SemiBold.otf",
+                "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf"};
     return {"/usr/share/fonts/opentype/inter/Inter-Regular.otf", "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"};
 }
 
@@ -39,7 +40,8 @@ struct Lettering::Font {
     double advance(uint32_t character, uint32_t next, double size) const {
         int advance = 0, bearing = 0;
         stbtt_GetCodepointHMetrics(&info, static_cast<int>(character), &advance, &bearing);
-        const int kern = next ? stbtt_GetCodepointKernAdvance(&info, static_cast<int>(character), static_cast<int>(next)) : 0;
+        const int kern =
+            next ? stbtt_GetCodepointKernAdvance(&info, static_cast<int>(character), static_cast<int>(next)) : 0;
         return double(advance + kern) * double(scale(size));
     }
 };
@@ -73,21 +75,26 @@ double Lettering::width(const std::string& text, double size) const {
     return width;
 }
 
-void Lettering::draw(Image8& image, double x, double baseline, double size, const std::string& text, Colour8 colour) const {
+void Lettering::draw(Image8& image, double x, double baseline, double size, const std::string& text,
+                     Colour8 colour) const {
     const std::vector<uint32_t> characters = decodeUtf8(text);
     const float scale = font_->scale(size);
     for (size_t i = 0; i < characters.size(); ++i) {
         const int left = static_cast<int>(std::floor(x));
         int width = 0, height = 0, offsetX = 0, offsetY = 0;
-        unsigned char* glyph = stbtt_GetCodepointBitmapSubpixel(&font_->info, scale, scale, static_cast<float>(x - left), 0,
-                                                                static_cast<int>(characters[i]), &width, &height, &offsetX, &offsetY);
+        unsigned char* glyph =
+            stbtt_GetCodepointBitmapSubpixel(&font_->info, scale, scale, static_cast<float>(x - left), 0,
+                                             static_cast<int>(characters[i]), &width, &height, &offsetX, &offsetY);
         for (int row = 0; row < height; ++row)
             for (int column = 0; column < width; ++column) {
                 const int px = left + offsetX + column, py = static_cast<int>(std::lround(baseline)) + offsetY + row;
                 if (px < 0 || py < 0 || px >= image.extent.width || py >= image.extent.height) continue;
-                uint8_t* pixel = image.rgba.data() + 4 * (static_cast<size_t>(py) * static_cast<size_t>(image.extent.width) + static_cast<size_t>(px));
+                uint8_t* pixel =
+                    image.rgba.data() +
+                    4 * (static_cast<size_t>(py) * static_cast<size_t>(image.extent.width) + static_cast<size_t>(px));
                 const int coverage = glyph[row * width + column];
-                blend(pixel[0], colour.r, coverage), blend(pixel[1], colour.g, coverage), blend(pixel[2], colour.b, coverage);
+                blend(pixel[0], colour.r, coverage), blend(pixel[1], colour.g, coverage),
+                    blend(pixel[2], colour.b, coverage);
             }
         stbtt_FreeBitmap(glyph, nullptr);
         x += font_->advance(characters[i], i + 1 < characters.size() ? characters[i + 1] : 0, size);

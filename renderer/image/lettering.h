@@ -25,8 +25,8 @@ public:
     Lettering(const Lettering&) = delete;
     Lettering& operator=(const Lettering&) = delete;
 
-    /// Advance of UTF-8 text in pixels, at `size` pixels from line to line less the gap (an em). Bytes that are not UTF-8
-    /// stand for the replacement character.
+    /// Advance of UTF-8 text in pixels, at `size` pixels from line to line less the gap (an em). Bytes that are not
+    /// UTF-8 stand for the replacement character.
     double width(const std::string& text, double size) const;
     /// Draws text that begins at `x` on `baseline`, in pixels from the top left. What is beyond the image is cut off.
     void draw(Image8& image, double x, double baseline, double size, const std::string& text, Colour8 colour) const;

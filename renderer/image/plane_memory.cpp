@@ -11,10 +11,13 @@
 namespace lumi {
 namespace {
 
-constexpr size_t kLine = 64;        ///< bytes of a cache line
-constexpr size_t kPageLines = 64;   ///< of the 4 KiB after which addresses compete for the same lines of the first-level cache
-constexpr size_t kSpread = 25;      ///< lines from one block's start to the next's; without a factor in common with kPageLines
-constexpr size_t kHugePage = size_t(2) << 20;  ///< where the system has them; a filter steps through dozens of pages at once
+constexpr size_t kLine = 64;  ///< bytes of a cache line
+/// of the 4 KiB after which addresses compete for the same lines of the first-level cache
+constexpr size_t kPageLines = 64;
+/// lines from one block's start to the next's; without a factor in common with kPageLines
+constexpr size_t kSpread = 25;
+/// where the system has them; a filter steps through dozens of pages at once
+constexpr size_t kHugePage = size_t(2) << 20;
 constexpr size_t kLarge = 1 << 16;  ///< bytes from which on the general allocator gives pages
 
 size_t roundedUp(size_t bytes, size_t unit) { return (bytes + unit - 1) / unit * unit; }

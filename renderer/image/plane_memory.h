@@ -3,10 +3,10 @@
 
 namespace lumi {
 
-/// Memory for images: begins on a cache line, and large blocks at ever other distances from the start of their page. Filters
-/// read a pixel of a dozen images at a time; if all began at the same distance, as large blocks of the general allocator do, they
-/// would fight for the few cache lines that such addresses may occupy. (The planes of one image lie without gaps.)
-/// Throws std::bad_alloc. The bytes are not set.
+/// Memory for images: begins on a cache line, and large blocks at ever other distances from the start of their page.
+/// Filters read a pixel of a dozen images at a time; if all began at the same distance, as large blocks of the general
+/// allocator do, they would fight for the few cache lines that such addresses may occupy. (The planes of one image lie
+/// without gaps.) Throws std::bad_alloc. The bytes are not set.
 void* allocatePlaneMemory(size_t bytes);
 void freePlaneMemory(void* block) noexcept;
 

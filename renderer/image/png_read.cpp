@@ -128,14 +128,8 @@ Image8 Png::image8() const {
     return image;
 }
 
-Png decodePng(std::span<const uint8_t> bytes, const std::string& name) {
-    return Reader(bytes, name).read();
-}
-Png readPng(const std::filesystem::path& path) {
-    return decodePng(readFile(path), path.string());
-}
-PngTexts readPngTexts(const std::filesystem::path& path) {
-    return Reader(readFile(path), path.string()).readTexts();
-}
+Png decodePng(std::span<const uint8_t> bytes, const std::string& name) { return Reader(bytes, name).read(); }
+Png readPng(const std::filesystem::path& path) { return decodePng(readFile(path), path.string()); }
+PngTexts readPngTexts(const std::filesystem::path& path) { return Reader(readFile(path), path.string()).readTexts(); }
 
 }  // namespace lumi

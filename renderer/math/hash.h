@@ -20,8 +20,12 @@ namespace lumi {
     return v ^ (v >> 31);
 }
 
-[[gnu::always_inline]] inline uint32_t hashCombine(uint32_t a, uint32_t b) { return static_cast<uint32_t>(mixBits((uint64_t(a) << 32) | b)); }
-[[gnu::always_inline]] inline uint32_t hashCombine(uint32_t a, uint32_t b, uint32_t c) { return hashCombine(hashCombine(a, b), c); }
+[[gnu::always_inline]] inline uint32_t hashCombine(uint32_t a, uint32_t b) {
+    return static_cast<uint32_t>(mixBits((uint64_t(a) << 32) | b));
+}
+[[gnu::always_inline]] inline uint32_t hashCombine(uint32_t a, uint32_t b, uint32_t c) {
+    return hashCombine(hashCombine(a, b), c);
+}
 
 /// 24 bits to [0, 1), never 1.
 [[gnu::always_inline]] inline float unitFloat(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }

@@ -3,10 +3,10 @@
 
 #include <cstdint>
 
-/// A register of floats, as wide as the instruction set that a kernel file is compiled for has them: 4, 8 or 16. For inner
-/// loops that keep more values at hand than the compiler holds in registers by itself. Include only from kernel files:
-/// everything here has internal linkage, each instruction set compiles its own copy. mulAdd() rounds once where the
-/// instruction set can, so that last bits differ between the sets.
+/// A register of floats, as wide as the instruction set that a kernel file is compiled for has them: 4, 8 or 16. For
+/// inner loops that keep more values at hand than the compiler holds in registers by itself. Include only from kernel
+/// files: everything here has internal linkage, each instruction set compiles its own copy. mulAdd() rounds once where
+/// the instruction set can, so that last bits differ between the sets.
 namespace lumi {
 namespace {
 
@@ -77,7 +77,8 @@ LUMI_LANES Lanes selectAbove(Lanes a, Lanes b, Lanes yes, Lanes no) {
 using LaneMask = __m256i;
 LUMI_LANES LaneMask laneMask(int from, int to) {
     const __m256i at = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-    return _mm256_andnot_si256(_mm256_cmpgt_epi32(_mm256_set1_epi32(from), at), _mm256_cmpgt_epi32(_mm256_set1_epi32(to), at));
+    return _mm256_andnot_si256(_mm256_cmpgt_epi32(_mm256_set1_epi32(from), at),
+                               _mm256_cmpgt_epi32(_mm256_set1_epi32(to), at));
 }
 LUMI_LANES Lanes loadPart(const float* p, LaneMask mask) { return _mm256_maskload_ps(p, mask); }
 LUMI_LANES void storePart(float* p, LaneMask mask, Lanes v) { _mm256_maskstore_ps(p, mask, v); }
@@ -123,9 +124,9 @@ LUMI_LANES void storePart(float* p, LaneMask mask, Lanes v) {
 
 using IntLanes = int32_t __attribute__((vector_size(sizeof(Lanes))));
 
-/// x[i] to 2^x[i], for x in [-126, 127], below that 0 or a denormal; relative error below 1e-5, which weights do not feel.
-/// NaN gives what -127 does, all but 0, so that a weight made of it drops its tap.
-/// Several at once, step by step: each step waits for the one before, and processors look only so far ahead.
+/// x[i] to 2^x[i], for x in [-126, 127], below that 0 or a denormal; relative error below 1e-5, which weights do not
+/// feel. NaN gives what -127 does, all but 0, so that a weight made of it drops its tap. Several at once, step by step:
+/// each step waits for the one before, and processors look only so far ahead.
 template <int Count>
 LUMI_LANES void weightExp2(Lanes (&x)[Count]) {
     Lanes f[Count], p[Count];
@@ -155,10 +156,12 @@ LUMI_LANES void weightExp2(Lanes (&x)[Count]) {
 #endif
 }
 
-/// log2(x) for x in (0, 1], absolute error below 7e-7, without a division; above 1 and for NaN 0, tiny x gives about -126.
+/// log2(x) for x in (0, 1], absolute error below 7e-7, without a division; above 1 and for NaN 0, tiny x gives about
+/// -126.
 LUMI_LANES Lanes log2OfCosine(Lanes x) {
     x = atMost(atLeast(x, lanes(1.17549435e-38f)), lanes(1.0f));
-    const IntLanes exponent = ((IntLanes)x - 0x3f3504f3) >> 23;  // the mantissa in [sqrt(1/2), sqrt(2)): 0x3f3504f3 is sqrt(1/2)
+    // the mantissa in [sqrt(1/2), sqrt(2)): 0x3f3504f3 is sqrt(1/2)
+    const IntLanes exponent = ((IntLanes)x - 0x3f3504f3) >> 23;
     const Lanes t = (Lanes)((IntLanes)x - (exponent << 23)) - lanes(1.0f);
     // Interpolant of log2(1 + t)/t in the Chebyshev nodes, degree 6.
     Lanes p = mulAdd(lanes(0.16818659f), t, lanes(-0.26796387f));

@@ -7,8 +7,8 @@ struct SinCos {
 };
 
 /// Sine and cosine of 2 pi `turns`, for |turns| below 2^20; off by less than 2e-7. Own polynomials: the same bits on
-/// every machine, and no call (kernels of each instruction set have their own). By Taylor up to an eighth of a turn; the
-/// rest is symmetry.
+/// every machine, and no call (kernels of each instruction set have their own). By Taylor up to an eighth of a turn;
+/// the rest is symmetry.
 [[gnu::always_inline]] inline SinCos sinCosTurns(float turns) {
     const int quarter = static_cast<int>(turns * 4 + (turns >= 0 ? 0.5f : -0.5f));
     const float x = (turns - 0.25f * static_cast<float>(quarter)) * 6.28318530717958647692f, x2 = x * x;

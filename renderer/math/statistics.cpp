@@ -57,9 +57,7 @@ double gammaQ(double a, double x) {
 
 double chiSquareTail(double x, double dof) { return gammaQ(dof / 2, x / 2); }
 
-double sidakLevel(double alpha, int64_t count) {
-    return -std::expm1(std::log1p(-alpha) / static_cast<double>(count));
-}
+double sidakLevel(double alpha, int64_t count) { return -std::expm1(std::log1p(-alpha) / static_cast<double>(count)); }
 
 double chiSquareTest(std::span<const double> observed, std::span<const double> expected) {
     assert(observed.size() == expected.size());

@@ -10,27 +10,31 @@
 namespace lumi {
 namespace {
 
-constexpr int kBlock = 64;           // side of the blocks whose contrast sets the just noticeable blur
-constexpr double kEdgeShare = 0.002; // blocks with fewer edge pixels do not count
-constexpr float kLeastSlope = 2;     // of an edge, grey levels a pixel
-constexpr int kFarthest = 101;       // pixels on one side of an edge
-constexpr double kBeta = 3.6;        // exponent of the psychometric function
+constexpr int kBlock = 64;            // side of the blocks whose contrast sets the just noticeable blur
+constexpr double kEdgeShare = 0.002;  // blocks with fewer edge pixels do not count
+constexpr float kLeastSlope = 2;      // of an edge, grey levels a pixel
+constexpr int kFarthest = 101;        // pixels on one side of an edge
+constexpr double kBeta = 3.6;         // exponent of the psychometric function
 
 /// Vertical edges: Sobel gradient along x of more than kLeastSlope, thinned along x, whose central differences point
 /// along x within 22.5 degrees; of others the width along the row is not that of the edge.
 std::vector<uint8_t> verticalEdges(ConstFloatPlane gray) {
     const int w = gray.width, h = gray.height;
-    const auto at = [&](int x, int y) { return static_cast<size_t>(y) * static_cast<size_t>(w) + static_cast<size_t>(x); };
+    const auto at = [&](int x, int y) {
+        return static_cast<size_t>(y) * static_cast<size_t>(w) + static_cast<size_t>(x);
+    };
     std::vector<float> slope(static_cast<size_t>(w) * static_cast<size_t>(h), 0.0f);
     for (int y = 1; y + 1 < h; ++y)
         for (int x = 1; x + 1 < w; ++x)
             slope[at(x, y)] = std::abs(gray.at(x + 1, y - 1) + 2 * gray.at(x + 1, y) + gray.at(x + 1, y + 1) -
-                                       gray.at(x - 1, y - 1) - 2 * gray.at(x - 1, y) - gray.at(x - 1, y + 1)) / 8;
+                                       gray.at(x - 1, y - 1) - 2 * gray.at(x - 1, y) - gray.at(x - 1, y + 1)) /
+                              8;
     const float tangent = std::tan(radians(22.5f));
     std::vector<uint8_t> edges(slope.size(), 0);
     for (int y = 1; y + 1 < h; ++y)
         for (int x = 1; x + 1 < w; ++x) {
-            const float alongX = std::abs(gray.at(x + 1, y) - gray.at(x - 1, y)), alongY = std::abs(gray.at(x, y + 1) - gray.at(x, y - 1));
+            const float alongX = std::abs(gray.at(x + 1, y) - gray.at(x - 1, y)),
+                        alongY = std::abs(gray.at(x, y + 1) - gray.at(x, y - 1));
             const float here = slope[at(x, y)];
             edges[at(x, y)] = here > kLeastSlope && here > slope[at(x - 1, y)] && here >= slope[at(x + 1, y)] &&
                               (alongX == 0 || alongY < tangent * alongX);
@@ -38,8 +42,8 @@ std::vector<uint8_t> verticalEdges(ConstFloatPlane gray) {
     return edges;
 }
 
-/// Pixels from the edge at `x` to the extremum on one side, along the row, at least one; `step` is -1 or 1, `rising` the
-/// direction of the intensity towards that side.
+/// Pixels from the edge at `x` to the extremum on one side, along the row, at least one; `step` is -1 or 1, `rising`
+/// the direction of the intensity towards that side.
 int extent(const float* row, int width, int x, int step, bool rising) {
     int length = 1;
     for (int i = x + step; length < kFarthest && i + step >= 0 && i + step < width; i += step, ++length)
@@ -94,8 +98,8 @@ Measurement measureCpbd(const ImagePair& pair, bool wantMap) {
         Image out(ldr.extent(), 1);
         for (int y = 0; y < ldr.height(); ++y)
             for (int x = 0; x < ldr.width(); ++x)
-                out.at(0, x, y) = std::round(
-                    255 * (0.299f * ldr.at(0, x, y) + 0.587f * ldr.at(1, x, y) + 0.114f * ldr.at(2, x, y)));
+                out.at(0, x, y) =
+                    std::round(255 * (0.299f * ldr.at(0, x, y) + 0.587f * ldr.at(1, x, y) + 0.114f * ldr.at(2, x, y)));
         return out;
     };
     const Image image = gray(pair.image), reference = gray(pair.reference);

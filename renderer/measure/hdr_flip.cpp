@@ -65,10 +65,12 @@ FlipExposures flipExposures(const Image& reference) {
 }
 
 Measurement measureHdrFlip(const ImagePair& pair, bool wantMap) {
-    const FlipExposures range = pair.settings.flipExposures ? *pair.settings.flipExposures : flipExposures(pair.reference);
+    const FlipExposures range =
+        pair.settings.flipExposures ? *pair.settings.flipExposures : flipExposures(pair.reference);
     Image worst(pair.image.extent(), 1);
     for (int i = 0; i < range.count; ++i) {
-        const auto exposure = static_cast<float>(range.start + (range.stop - range.start) * i / std::max(range.count - 1, 1));
+        const auto exposure =
+            static_cast<float>(range.start + (range.stop - range.start) * i / std::max(range.count - 1, 1));
         const Image error = flipError(flipFeatures(toneMapped(pair.image, exposure)),
                                       flipFeatures(toneMapped(pair.reference, exposure)));
         parallelRanges(static_cast<int64_t>(worst.size()), 1 << 15, [&](int64_t begin, int64_t end) {

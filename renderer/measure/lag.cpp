@@ -65,10 +65,12 @@ void LagMeter::add(const Image& frame) {
 
 Lag LagMeter::lag(int64_t stepFrame) const {
     Lag result{std::nan(""), stepFrame, curve_, nonFinite_, ""};
-    const auto reached = std::find_if(curve_.begin(), curve_.end(), [](double response) { return response >= kReached; });
+    const auto reached =
+        std::find_if(curve_.begin(), curve_.end(), [](double response) { return response >= kReached; });
     if (reached != curve_.end()) result.value = static_cast<double>(reached - curve_.begin());
     else if (!changes()) result.reason = "the step changes nothing that counts";
-    else if (std::all_of(curve_.begin(), curve_.end(), [](double v) { return std::isnan(v); })) result.reason = "no pixel that the step changes is finite";
+    else if (std::all_of(curve_.begin(), curve_.end(), [](double v) { return std::isnan(v); }))
+        result.reason = "no pixel that the step changes is finite";
     else result.reason = fmt::format("not reached within {} frames", curve_.size());
     return result;
 }

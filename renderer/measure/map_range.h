@@ -4,9 +4,9 @@
 
 namespace lumi {
 
-/// The one range of colours in which error maps of a metric are shown, so that they can be laid beside each other: from 0,
-/// to 1 for maps that have a scale of their own (Metric::unitMap), else to the largest 99th percentile of a map. Where
-/// that is 0 to the largest value, and where all are 0 to 1.
+/// The one range of colours in which error maps of a metric are shown, so that they can be laid beside each other: from
+/// 0, to 1 for maps that have a scale of their own (Metric::unitMap), else to the largest 99th percentile of a map.
+/// Where that is 0 to the largest value, and where all are 0 to 1.
 class MapRange {
 public:
     explicit MapRange(const Metric& metric) : colours_(metric.mapColours), unit_(metric.unitMap) {}

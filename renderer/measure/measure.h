@@ -22,7 +22,7 @@ struct FlipExposures {
 /// What metrics can be told beside the images; each is printed with its number (Measurement::details). Command line
 /// and study files fill the same fields.
 struct MetricSettings {
-    double relMseEpsilon = 0.001;                  ///< added to the squared gray reference; above 0
+    double relMseEpsilon = 0.001;  ///< added to the squared gray reference; above 0
     /// Of HDR-FLIP; without them it takes flipExposures(reference). All tests of one reference want the same.
     std::optional<FlipExposures> flipExposures{};
 
@@ -33,22 +33,22 @@ struct MetricSettings {
 /// out, do not count in any metric; they are 0 in error maps.
 struct ImagePair {
     Image image{}, reference{};  ///< 3 channels
-    Image mask{};            ///< 1 channel, above 0.5 counts; empty: everything counts
-    float exposureEv = 0;    ///< for metrics on tone-mapped images: 2^EV, clamp, sRGB
+    Image mask{};                ///< 1 channel, above 0.5 counts; empty: everything counts
+    float exposureEv = 0;        ///< for metrics on tone-mapped images: 2^EV, clamp, sRGB
     MetricSettings settings{};
 
-    /// Checks extents, finds non-finite pixels and blanks them: where the reference is broken both images get 0, where the
-    /// image alone is it gets the reference's value, so that what is computed from the reference is the same for every
-    /// image. Call once before measuring.
-    /// Throws Error(BadInput) if extents differ.
+    /// Checks extents, finds non-finite pixels and blanks them: where the reference is broken both images get 0, where
+    /// the image alone is it gets the reference's value, so that what is computed from the reference is the same for
+    /// every image. Call once before measuring. Throws Error(BadInput) if extents differ.
     void prepare(const std::string& where = "");
     bool counts(int x, int y) const { return valid.empty() || valid.at(0, x, y) > 0.5f; }
     /// Why no pixel counts, as a sentence's end; empty if one does.
     std::string whyNothingCounts() const;
 
-    /// Set by prepare(): pixels that are not finite in the image, in the reference, in the two together, and what counts.
+    /// Set by prepare(): pixels that are not finite in the image, in the reference, in the two together, and what
+    /// counts.
     int64_t nonFiniteImage = 0, nonFiniteReference = 0, nonFinitePixels = 0, countedPixels = 0;
-    Image valid{};                ///< set by prepare() where not everything counts
+    Image valid{};  ///< set by prepare() where not everything counts
 };
 
 /// A metric's number and its error map (1 channel, extent of the images; empty if not asked for or not defined).
@@ -63,7 +63,7 @@ struct Measurement {
 
 /// One metric the program knows.
 struct Metric {
-    const char* id;          ///< "rel_mse" style ids of `list metrics`
+    const char* id;  ///< "rel_mse" style ids of `list metrics`
     const char* title;
     const char* definition;  ///< one sentence with space, constants and source
     bool higherIsBetter;
@@ -71,8 +71,8 @@ struct Metric {
     const char* mapColours;  ///< colour map for its error map, nullptr without one
     bool unitMap;            ///< its map goes from 0, no difference, to 1, a complete one
     Measurement (*measure)(const ImagePair& pair, bool wantMap);
-    const char* range;       ///< interval of its values: "[0, 1]"
-    const char* source;      ///< the paper's key in the README, or the field's usual definition
+    const char* range;   ///< interval of its values: "[0, 1]"
+    const char* source;  ///< the paper's key in the README, or the field's usual definition
 };
 
 /// Every metric, in the order of the contract: rmse relmse mse mae psnr smape ssim ms_ssim flip hdr_flip cpbd.

@@ -95,10 +95,10 @@ void flipCombine(const float* const test[4], const float* const reference[4], fl
     const float *tex = test[0], *tey = test[1], *tpx = test[2], *tpy = test[3];
     const float *rex = reference[0], *rey = reference[1], *rpx = reference[2], *rpy = reference[3];
     for (int x = 0; x < width; ++x) {
-        const float edges = absolute(squareRoot(tex[x] * tex[x] + tey[x] * tey[x]) -
-                                     squareRoot(rex[x] * rex[x] + rey[x] * rey[x]));
-        const float points = absolute(squareRoot(tpx[x] * tpx[x] + tpy[x] * tpy[x]) -
-                                      squareRoot(rpx[x] * rpx[x] + rpy[x] * rpy[x]));
+        const float edges =
+            absolute(squareRoot(tex[x] * tex[x] + tey[x] * tey[x]) - squareRoot(rex[x] * rex[x] + rey[x] * rey[x]));
+        const float points =
+            absolute(squareRoot(tpx[x] * tpx[x] + tpy[x] * tpy[x]) - squareRoot(rpx[x] * rpx[x] + rpy[x] * rpy[x]));
         const float feature = squareRoot(0.70710678f * (edges > points ? edges : points));
         const float powered = kernelPow(colour[x], 1.0f - feature);
         colour[x] = colour[x] > 0 ? (powered < 1.0f ? powered : 1.0f) : 0.0f;
@@ -172,19 +172,19 @@ void ssimSmooth(const float* a, const float* b, const float* weights, float* con
         }
 }
 
-/// With s = a + b - 1 (about 0, for the sake of the variances' last bits) and d = a - b: mean(a) mean(b) =
-/// ((ms + 1)^2 - md^2) / 4, mean(a)^2 + mean(b)^2 = ((ms + 1)^2 + md^2) / 2, and the same without the 1 for covariance and
-/// the sum of variances. Equal images have d = 0, and give 1 to the last bit.
+/// With s = a + b - 1 (about 0, for the sake of the variances' last bits) and d = a - b: mean(a) mean(b) = ((ms + 1)^2
+/// - md^2) / 4, mean(a)^2 + mean(b)^2 = ((ms + 1)^2 + md^2) / 2, and the same without the 1 for covariance and the sum
+/// of variances. Equal images have d = 0, and give 1 to the last bit.
 void ssimRow(const float* const* rows, const float* weights, float* ssim, float* contrast, int width) {
     constexpr float c1 = 0.01f * 0.01f, c2 = 0.03f * 0.03f;
     for (int x = 0; x < width; x += kSsimChunk) {
         float means[4][kSsimChunk];
-        for (int q = 0; q < 4; ++q)
-            foldedTaps([rows, q, x](int k) { return rows[4 * k + q] + x; }, weights, means[q]);
+        for (int q = 0; q < 4; ++q) foldedTaps([rows, q, x](int k) { return rows[4 * k + q] + x; }, weights, means[q]);
         for (int i = 0; i < kSsimChunk; ++i) {
             const float ss = means[0][i] * means[0][i], dd = means[1][i] * means[1][i];
             const float sumVariance = means[2][i] - ss, differenceVariance = means[3][i] - dd;
-            const float structure = (0.5f * (sumVariance - differenceVariance) + c2) / (0.5f * (sumVariance + differenceVariance) + c2);
+            const float structure =
+                (0.5f * (sumVariance - differenceVariance) + c2) / (0.5f * (sumVariance + differenceVariance) + c2);
             const float mean = means[0][i] + 1.0f, both = mean * mean;
             contrast[x + i] = structure;
             ssim[x + i] = (0.5f * (both - dd) + c1) / (0.5f * (both + dd) + c1) * structure;

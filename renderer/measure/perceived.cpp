@@ -17,7 +17,8 @@ constexpr double kPiExact = 3.14159265358979323846;
 struct Sensitivity {
     double a1, b1, a2, b2;
 };
-constexpr Sensitivity kAchromatic{1, 0.0047, 0, 1e-5}, kRedGreen{1, 0.0053, 0, 1e-5}, kBlueYellow{34.1, 0.04, 13.5, 0.025};
+constexpr Sensitivity kAchromatic{1, 0.0047, 0, 1e-5}, kRedGreen{1, 0.0053, 0, 1e-5},
+    kBlueYellow{34.1, 0.04, 13.5, 0.025};
 
 /// One of the two Gaussians as a separable filter, and its share of the kernel's total weight.
 struct SeparableGaussian {
@@ -27,7 +28,8 @@ struct SeparableGaussian {
 
 int filterRadius() {
     // Three standard deviations of the widest Gaussian, the same for all channels.
-    return static_cast<int>(std::ceil(3 * std::sqrt(kBlueYellow.b1 / (2 * kPiExact * kPiExact)) * kFlipPixelsPerDegree));
+    return static_cast<int>(
+        std::ceil(3 * std::sqrt(kBlueYellow.b1 / (2 * kPiExact * kPiExact)) * kFlipPixelsPerDegree));
 }
 
 std::vector<SeparableGaussian> separate(const Sensitivity& s) {
@@ -130,7 +132,8 @@ FlipFeatures flipFeatures(const Image& linear) {
     filterChannel(opponent.plane(1), kRedGreen, features.filtered.plane(1));
     filterChannel(opponent.plane(2), kBlueYellow, features.filtered.plane(2));
 
-    // Features live on the achromatic channel scaled to [0,1]; the offset matters at no border since edges are extended.
+    // Features live on the achromatic channel scaled to [0,1]; the offset matters at no border since edges are
+    // extended.
     Image achromatic(extent, 1);
     parallelRanges(static_cast<int64_t>(achromatic.size()), 1 << 15, [&](int64_t begin, int64_t end) {
         for (int64_t i = begin; i < end; ++i) achromatic.data()[i] = (opponent.data()[i] + 16.0f) / 116.0f;

@@ -8,7 +8,8 @@ namespace {
 
 /// Mean of per-pixel errors over the pixels that count; a map is held only if it is wanted.
 template <class PixelError>
-Measurement meanError(const Image& image, const Image& reference, const ImagePair& pair, bool wantMap, PixelError error) {
+Measurement meanError(const Image& image, const Image& reference, const ImagePair& pair, bool wantMap,
+                      PixelError error) {
     const int width = image.width(), height = image.height();
     Measurement result;
     if (wantMap) result.map.reset(image.extent(), 1);
@@ -18,7 +19,8 @@ Measurement meanError(const Image& image, const Image& reference, const ImagePai
         for (int y = static_cast<int>(begin); y < end; ++y) {
             float* out = wantMap ? result.map.plane(0).row(y) : buffer.data();
             const float *r = image.plane(0).row(y), *g = image.plane(1).row(y), *b = image.plane(2).row(y);
-            const float *rr = reference.plane(0).row(y), *rg = reference.plane(1).row(y), *rb = reference.plane(2).row(y);
+            const float *rr = reference.plane(0).row(y), *rg = reference.plane(1).row(y),
+                        *rb = reference.plane(2).row(y);
             for (int x = 0; x < width; ++x) out[x] = error(Vec3(r[x], g[x], b[x]), Vec3(rr[x], rg[x], rb[x]));
             for (int x = 0; !pair.valid.empty() && x < width; ++x)
                 if (!pair.counts(x, y)) out[x] = 0;

@@ -35,8 +35,8 @@ int64_t windowsThatCount(Extent2 extent, const Image& counted) {
     return count;
 }
 
-/// Sum of the SSIM (or its contrast-structure part) over the windows that count; each is noted in `map` (may be null) at
-/// its centre as a third of 1 - SSIM, added to what is there.
+/// Sum of the SSIM (or its contrast-structure part) over the windows that count; each is noted in `map` (may be null)
+/// at its centre as a third of 1 - SSIM, added to what is there.
 double sumThatCounts(const SsimPlanes& planes, const Image& counted, Image* map) {
     return sumOverWindows(planes, [&](const SsimSpan& span) {
         if (counted.empty() && !map) return sumOf(span.ssim, span.count);
@@ -93,7 +93,8 @@ void multiplyByScale(ConstFloatPlane part, size_t scale, double weight, Image& p
     });
 }
 
-/// Mean of one scale's part over the windows whose centre counts, NaN if none does; `part` (may be null) gets all windows.
+/// Mean of one scale's part over the windows whose centre counts, NaN if none does; `part` (may be null) gets all
+/// windows.
 double meanOfScale(const SsimPlanes& planes, bool last, const Image& counted, Image* part) {
     const double sum = sumOverWindows(planes, [&](const SsimSpan& span) {
         const float* values = last ? span.ssim : span.contrast;
@@ -120,7 +121,8 @@ double msSsimOfChannel(Image a, Image b, Image counted, Image* map) {
         Image part;
         if (map) part.reset({a.width() - kSsimWindow + 1, a.height() - kSsimWindow + 1}, 1);
         const double weight = kScaleWeights[i] / weightSum;
-        const double mean = meanOfScale({std::as_const(a).plane(0), std::as_const(b).plane(0), {}}, last, counted, map ? &part : nullptr);
+        const double mean = meanOfScale({std::as_const(a).plane(0), std::as_const(b).plane(0), {}}, last, counted,
+                                        map ? &part : nullptr);
         value *= std::isnan(mean) ? mean : std::pow(std::max(0.0, mean), weight);
         if (map) multiplyByScale(std::as_const(part).plane(0), i, weight, *map);
         if (last) break;
@@ -136,14 +138,16 @@ double msSsimOfChannel(Image a, Image b, Image counted, Image* map) {
 double ssim(const Image& image, const Image& reference) {
     if (shortSide(image) < kSsimWindow) return std::nan("");
     double sum = 0;
-    for (int c = 0; c < image.channels(); ++c) sum += sumThatCounts({image.plane(c), reference.plane(c), {}}, {}, nullptr);
+    for (int c = 0; c < image.channels(); ++c)
+        sum += sumThatCounts({image.plane(c), reference.plane(c), {}}, {}, nullptr);
     return sum / static_cast<double>(windowsThatCount(image.extent(), {}) * image.channels());
 }
 
 double msSsim(const Image& image, const Image& reference) {
     if (shortSide(image) < kSsimWindow) return std::nan("");
     double total = 0;
-    for (int c = 0; c < image.channels(); ++c) total += msSsimOfChannel(channelOf(image, c), channelOf(reference, c), {}, nullptr);
+    for (int c = 0; c < image.channels(); ++c)
+        total += msSsimOfChannel(channelOf(image, c), channelOf(reference, c), {}, nullptr);
     return total / image.channels();
 }
 
@@ -151,14 +155,16 @@ Measurement measureSsim(const ImagePair& pair, bool wantMap) {
     Measurement result;
     if (wantMap) result.map.reset(pair.image.extent(), 1);
     if (shortSide(pair.image) < kSsimWindow) result.reason = kTooSmall;
-    else if (result.reason = pair.whyNothingCounts(); result.reason.empty() && windowsThatCount(pair.image.extent(), pair.valid) == 0)
+    else if (result.reason = pair.whyNothingCounts();
+             result.reason.empty() && windowsThatCount(pair.image.extent(), pair.valid) == 0)
         result.reason = kNoWindow;
     if (!result.reason.empty()) return result;
     // A window counts if its centre pixel does; the map shows 1 - SSIM at the centre, 0 in the border.
     const float factor = std::exp2(pair.exposureEv);
     double sum = 0;
     for (int c = 0; c < 3; ++c)
-        sum += sumThatCounts({pair.image.plane(c), pair.reference.plane(c), factor}, pair.valid, wantMap ? &result.map : nullptr);
+        sum += sumThatCounts({pair.image.plane(c), pair.reference.plane(c), factor}, pair.valid,
+                             wantMap ? &result.map : nullptr);
     result.value = sum / static_cast<double>(3 * windowsThatCount(pair.image.extent(), pair.valid));
     return result;
 }

@@ -35,7 +35,8 @@ public:
     SsimSpan windows(int y) {
         const float* rows[kSsimWindow * 4];
         for (int k = 0; k < kSsimWindow; ++k)
-            for (int q = 0; q < 4; ++q) rows[4 * k + q] = ring_[static_cast<size_t>((y + k) % kSsimWindow * 4 + q)].data();
+            for (int q = 0; q < 4; ++q)
+                rows[4 * k + q] = ring_[static_cast<size_t>((y + k) % kSsimWindow * 4 + q)].data();
         measureKernels().ssimRow(rows, weights_.data(), ssim_.data(), contrast_.data(), padded_);
         return {x_, y, count_, ssim_.data(), contrast_.data()};
     }
@@ -65,7 +66,8 @@ private:
 double sumOverWindows(const SsimPlanes& planes, const std::function<double(const SsimSpan&)>& take) {
     const int width = planes.a.width - kSsimWindow + 1, height = planes.a.height - kSsimWindow + 1;
     if (width < 1 || height < 1) return 0;
-    const std::vector<float> weights = gaussianWeights(kSsimWindow, 1.5);  // its first half and middle are what kernels read
+    // its first half and middle are what kernels read
+    const std::vector<float> weights = gaussianWeights(kSsimWindow, 1.5);
     const int tiles = (width + kSsimTile - 1) / kSsimTile;
     std::vector<double> sums(static_cast<size_t>(tiles) * static_cast<size_t>(height));
     parallelRanges(height, kRowGrain, [&](int64_t begin, int64_t end) {
@@ -76,7 +78,8 @@ double sumOverWindows(const SsimPlanes& planes, const std::function<double(const
             for (int y = first; y < first + kSsimWindow - 1; ++y) rows->add(y);
             for (int y = first; y < end; ++y) {
                 rows->add(y + kSsimWindow - 1);
-                sums[static_cast<size_t>(y) * static_cast<size_t>(tiles) + static_cast<size_t>(tile)] = take(rows->windows(y));
+                sums[static_cast<size_t>(y) * static_cast<size_t>(tiles) + static_cast<size_t>(tile)] =
+                    take(rows->windows(y));
             }
         }
     });

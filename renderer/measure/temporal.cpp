@@ -59,7 +59,8 @@ private:
     bool sameSurface(int x, int y, int px, int py) const {
         if (!pair_.depth || !pair_.previousDepth) return true;
         const float depth = pair_.depth->at(0, x, y), seen = pair_.previousDepth->at(0, px, py);
-        if (std::isinf(depth) || std::isinf(seen)) return std::isinf(depth) && std::isinf(seen);  // the sky stays the sky
+        if (std::isinf(depth) || std::isinf(seen))
+            return std::isinf(depth) && std::isinf(seen);  // the sky stays the sky
         const float was = depth + (pair_.motion->channels() > 2 ? pair_.motion->at(2, x, y) : 0);
         return std::abs(seen - was) <= kDepthTolerance * std::abs(was);
     }
@@ -78,7 +79,8 @@ void checkExtents(const TemporalPair& pair) {
 
 Measurement difference(const TemporalPair& pair, bool follows, bool wantMap) {
     checkExtents(pair);
-    const Image now = shownLuminance(pair.image, pair.exposureEv), before = shownLuminance(pair.previous, pair.exposureEv);
+    const Image now = shownLuminance(pair.image, pair.exposureEv),
+                before = shownLuminance(pair.previous, pair.exposureEv);
     const Follower follower(pair, before);
     Image map(now.extent(), 1);
     double sum = 0;
@@ -101,12 +103,15 @@ Measurement difference(const TemporalPair& pair, bool follows, bool wantMap) {
     }
     Measurement result;
     if (count > 0) result.value = sum / static_cast<double>(count);
-    else result.reason = asked == 0 ? "the mask leaves no pixel"
-                         : broken >= now.extent().area() ? "no pixel is finite in both frames"
-                         : follows ? "no point was seen in the frame before" : "no pixel that counts is finite in both frames";
+    else
+        result.reason = asked == 0                      ? "the mask leaves no pixel"
+                        : broken >= now.extent().area() ? "no pixel is finite in both frames"
+                        : follows                       ? "no point was seen in the frame before"
+                                                        : "no pixel that counts is finite in both frames";
     result.details.emplace_back("nonfinite_pixels", static_cast<double>(broken));
     if (follows)
-        result.details.emplace_back("covered", asked > 0 ? static_cast<double>(count) / static_cast<double>(asked) : 0.0);
+        result.details.emplace_back("covered",
+                                    asked > 0 ? static_cast<double>(count) / static_cast<double>(asked) : 0.0);
     if (wantMap) result.map = std::move(map);
     return result;
 }
@@ -114,6 +119,8 @@ Measurement difference(const TemporalPair& pair, bool follows, bool wantMap) {
 }  // namespace
 
 Measurement measureTemporal(const TemporalPair& pair, bool wantMap) { return difference(pair, false, wantMap); }
-Measurement measureReprojectedTemporal(const TemporalPair& pair, bool wantMap) { return difference(pair, true, wantMap); }
+Measurement measureReprojectedTemporal(const TemporalPair& pair, bool wantMap) {
+    return difference(pair, true, wantMap);
+}
 
 }  // namespace lumi

@@ -8,9 +8,10 @@ namespace lumi {
 
 /// Two consecutive frames of one sequence, linear RGB of one extent, and what is known of how their points moved.
 struct TemporalPair {
-    const Image& image;     ///< the later frame
+    const Image& image;  ///< the later frame
     const Image& previous;
-    const Image* motion = nullptr;         ///< XY or XYZ of the later frame (Signal::Motion, best the reference's); null: nothing moves
+    /// XY or XYZ of the later frame (Signal::Motion, best the reference's); null: nothing moves
+    const Image* motion = nullptr;
     const Image* depth = nullptr;          ///< linear view depth of the later frame; null: no point is ever uncovered
     const Image* previousDepth = nullptr;  ///< of the earlier frame
     const Image* mask = nullptr;           ///< above 0.5 counts; null: everything
@@ -34,11 +35,11 @@ const std::vector<SequenceMetric>& sequenceMetricCatalog();
 /// Throws Error(BadInput) if extents differ.
 Measurement measureTemporal(const TemporalPair& pair, bool wantMap);
 
-/// The same after each pixel of the later frame has followed its motion to where its point was, bilinearly: the movement of
-/// the camera and of objects is no flicker then. Points that were off the image do not count; nor, with both depths, do
-/// those that something hid (a depth that differs by more than 5% from where the point was, at any of the four pixels).
-/// A pixel whose motion is not finite counts for nothing.
-/// Details: `nonfinite_pixels`, and `covered`, the share of pixels that count.
+/// The same after each pixel of the later frame has followed its motion to where its point was, bilinearly: the
+/// movement of the camera and of objects is no flicker then. Points that were off the image do not count; nor, with
+/// both depths, do those that something hid (a depth that differs by more than 5% from where the point was, at any of
+/// the four pixels). A pixel whose motion is not finite counts for nothing. Details: `nonfinite_pixels`, and `covered`,
+/// the share of pixels that count.
 Measurement measureReprojectedTemporal(const TemporalPair& pair, bool wantMap);
 
 }  // namespace lumi

@@ -107,8 +107,8 @@ struct ParameterInfo {
     Scale scale = Scale::Linear;
     Redo redo = Redo::Filter;
     std::vector<std::string> options;
-    bool active = true;      ///< its `when` holds at present
-    ParameterValue value;    ///< at present
+    bool active = true;    ///< its `when` holds at present
+    ParameterValue value;  ///< at present
 };
 
 using Describe = std::function<void(ParameterVisitor&)>;

@@ -5,9 +5,11 @@
 namespace lumi {
 
 void AntialiasingPass::describe(ParameterVisitor& v) {
-    v.toggle("taa", enabled_,
-             {.label = "Temporal antialiasing",
-              .help = "Antialias the finished image over frames [Karis14]; edges that the filter keeps are aliased otherwise"});
+    v.toggle(
+        "taa", enabled_,
+        {.label = "Temporal antialiasing",
+         .help =
+             "Antialias the finished image over frames [Karis14]; edges that the filter keeps are aliased otherwise"});
     v.when(enabled_, [&] {
         RenamingVisitor renamed(v, "taa-");
         settings_.describe(renamed);
@@ -21,7 +23,8 @@ bool AntialiasingPass::run(const FrameContext& context, Image& image) {
         return true;
     }
     const auto measured = context.timer.measure("antialiasing");
-    return antialiasTemporally(context.signals, settings_, image, step.previous, scratch_, step.next, image, context.stop);
+    return antialiasTemporally(context.signals, settings_, image, step.previous, scratch_, step.next, image,
+                               context.stop);
 }
 
 }  // namespace lumi

@@ -40,8 +40,9 @@ void forWindow(Extent2 extent, Pixel p, int step, Body body) {
 
 }  // namespace
 
-void addHistoryRows(Lineage& lineage, const Signals& signals, const TemporalHistory* previous, const TemporalSettings& settings,
-                    const Image* dropped, const std::string& stage, const Image* loss) {
+void addHistoryRows(Lineage& lineage, const Signals& signals, const TemporalHistory* previous,
+                    const TemporalSettings& settings, const Image* dropped, const std::string& stage,
+                    const Image* loss) {
     const Pixel p = lineage.pixel;
     if (signals.ids(Signal::ObjectId).at(0, p.x, p.y) == 0) {
         lineage.rows.push_back({stage, p, 1, "this frame's sample; the sky has no history"});
@@ -55,7 +56,8 @@ void addHistoryRows(Lineage& lineage, const Signals& signals, const TemporalHist
     const Reprojection reprojection(signals, previous->surface, settings.reprojection);
     const ReprojectedTaps taps = reprojection.taps(p.x, p.y);
     float length = 1;
-    for (size_t k = 0; k < static_cast<size_t>(taps.count); ++k) length += taps.weight[k] * previous->length.data()[taps.index[k]];
+    for (size_t k = 0; k < static_cast<size_t>(taps.count); ++k)
+        length += taps.weight[k] * previous->length.data()[taps.index[k]];
     float alpha = taps.count == 0 ? 1 : std::max(settings.colourAlpha, settings.arithmeticWarmUp ? 1 / length : 0);
     const bool drops = dropped && taps.count > 0 && dropped->at(0, p.x, p.y) != 0;
     if (drops) alpha = 0;
@@ -69,16 +71,18 @@ void addHistoryRows(Lineage& lineage, const Signals& signals, const TemporalHist
     size_t kept = 0;
     for (size_t k = 0; k < 4; ++k) {
         const bool counts = taps.refusals[k] == kTapKept;
-        const Pixel at = counts ? placeOf(kept) : Pixel{taps.x0 + static_cast<int>(k & 1), taps.y0 + static_cast<int>(k >> 1)};
-        lineage.rows.push_back({stage, at, counts ? (1 - alpha) * taps.weight[kept] : 0, counts ? "kept" : refusalText(taps.refusals[k])});
+        const Pixel at =
+            counts ? placeOf(kept) : Pixel{taps.x0 + static_cast<int>(k & 1), taps.y0 + static_cast<int>(k >> 1)};
+        lineage.rows.push_back(
+            {stage, at, counts ? (1 - alpha) * taps.weight[kept] : 0, counts ? "kept" : refusalText(taps.refusals[k])});
         kept += counts;
     }
     for (size_t k = 0; taps.wide && k < static_cast<size_t>(taps.count); ++k)
         lineage.rows.push_back({stage, placeOf(k), (1 - alpha) * taps.weight[k], "kept by the 3x3 fall-back"});
 }
 
-void addAtrousRows(Lineage& lineage, const std::string& stage, const SurfaceGuide& guide, const AtrousSettings& settings,
-                   const Illumination& illumination, int step) {
+void addAtrousRows(Lineage& lineage, const std::string& stage, const SurfaceGuide& guide,
+                   const AtrousSettings& settings, const Illumination& illumination, int step) {
     const Pixel p = lineage.pixel;
     const size_t first = lineage.rows.size();
     forWindow({guide.width, guide.height}, p, step, [&](Pixel q, int i, int j) {
@@ -90,15 +94,16 @@ void addAtrousRows(Lineage& lineage, const std::string& stage, const SurfaceGuid
     normalise(lineage, first);
 }
 
-void addEdgeAvoidingRows(Lineage& lineage, const std::string& stage, const Signals& signals, const EdgeAvoidingSettings& settings,
-                         int level, const Image& in) {
+void addEdgeAvoidingRows(Lineage& lineage, const std::string& stage, const Signals& signals,
+                         const EdgeAvoidingSettings& settings, int level, const Image& in) {
     const Pixel p = lineage.pixel;
     const size_t first = lineage.rows.size();
     const Image& inverseDepth = signals[Signal::InverseDepth];
     const float z = inverseDepth.at(0, p.x, p.y), factor = static_cast<float>(1 << level);
     const auto squared = [&](const Image& image, Pixel q) {
         float sum = 0;
-        for (int c = 0; c < 3; ++c) sum += (image.at(c, p.x, p.y) - image.at(c, q.x, q.y)) * (image.at(c, p.x, p.y) - image.at(c, q.x, q.y));
+        for (int c = 0; c < 3; ++c)
+            sum += (image.at(c, p.x, p.y) - image.at(c, q.x, q.y)) * (image.at(c, p.x, p.y) - image.at(c, q.x, q.y));
         return sum;
     };
     const auto weight = [](float square, float sigma) { return std::exp(-square / (sigma * sigma)); };
@@ -110,7 +115,8 @@ void addEdgeAvoidingRows(Lineage& lineage, const std::string& stage, const Signa
             n = weight(squared(signals[Signal::Normal], q), settings.sigmaNormal * factor);
             x = weight(squared(signals[Signal::Position], q) * z * z, settings.sigmaPosition);
         }
-        lineage.rows.push_back({stage, q, kSpline[i + 2] * kSpline[j + 2] * c * n * x, fmt::format("w_rt {:.3f}  w_n {:.3f}  w_x {:.3f}", c, n, x)});
+        lineage.rows.push_back({stage, q, kSpline[i + 2] * kSpline[j + 2] * c * n * x,
+                                fmt::format("w_rt {:.3f}  w_n {:.3f}  w_x {:.3f}", c, n, x)});
     });
     normalise(lineage, first);
 }

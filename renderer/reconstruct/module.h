@@ -25,8 +25,8 @@ using FrameNumber = int64_t;
 /// resize); motion is 0 then. Each module decides what it keeps.
 struct Changes {
     bool cut = false;
-    bool camera = false;    ///< pose, lens or projection
-    bool objects = false;   ///< some instance or deformation moved
+    bool camera = false;   ///< pose, lens or projection
+    bool objects = false;  ///< some instance or deformation moved
     bool lights = false;
     bool materials = false;
     bool sampling = false;  ///< path, sampler or jitter settings
@@ -38,7 +38,8 @@ struct Tap {
     std::string name;      ///< camelCase; files call it <module>-<name>
     const char* channels;  ///< one letter each, as SignalInfo::channels
     const char* unit = "";
-    std::optional<ValueRange> range{};  ///< of codes, weights and counts: false colour spans it, the same in every frame
+    std::optional<ValueRange>
+        range{};  ///< of codes, weights and counts: false colour spans it, the same in every frame
     const char* colourMap = "viridis";  ///< "none" for colours shown as they are
     const char* help = "";
 };
@@ -53,8 +54,9 @@ struct FrameContext {
     Changes changes;
     const TapSet& wantedTaps;
     Tracer& tracer;  ///< bound to `scene`: for methods that trace samples of their own
-    /// What the frame's signals were made with. The keys (x, y, firstSample + s) name their random numbers: Tracer::shade()
-    /// with the key of an earlier sample and its surface point shades that sample again as things are now.
+    /// What the frame's signals were made with. The keys (x, y, firstSample + s) name their random numbers:
+    /// Tracer::shade() with the key of an earlier sample and its surface point shades that sample again as things are
+    /// now.
     const FrameSampling& sampling;
     StageTimer& timer;
     std::stop_token stop;

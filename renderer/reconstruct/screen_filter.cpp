@@ -65,19 +65,26 @@ size_t ScreenFilter::byteCount() const {
 }
 
 std::vector<Tap> temporalTaps() {
-    return {{.name = "reprojection",
-             .channels = "Y",
-             .range = ValueRange{0, kVerdictUnused},
-             .colourMap = "turbo",
-             .help = "Verdict of the history's taps: 0 sky, 1 all kept, 2 some refused, 3 found by the 3x3 fall-back, 4 and "
-                     "above lost, plus 1 off screen, 2 another object, 4 depth, 8 normal; 20 accumulation is off"},
-            {.name = "refusals",
-             .channels = "XYZW",
-             .range = ValueRange{0, 15},
-             .colourMap = "none",
-             .help = "Which of the history's four taps were refused for another object (X), depth (Y), normal (Z) and off screen "
-                     "(W): each a sum of 1, 2, 4 and 8 for the upper left, upper right, lower left and lower right one"},
-            {.name = "historyLength", .channels = "Y", .unit = "frames", .range = ValueRange{0, 64}, .help = "Frames that make up a pixel's history"}};
+    return {
+        {.name = "reprojection",
+         .channels = "Y",
+         .range = ValueRange{0, kVerdictUnused},
+         .colourMap = "turbo",
+         .help =
+             "Verdict of the history's taps: 0 sky, 1 all kept, 2 some refused, 3 found by the 3x3 fall-back, 4 and "
+             "above lost, plus 1 off screen, 2 another object, 4 depth, 8 normal; 20 accumulation is off"},
+        {.name = "refusals",
+         .channels = "XYZW",
+         .range = ValueRange{0, 15},
+         .colourMap = "none",
+         .help = "Which of the history's four taps were refused for another object (X), depth (Y), normal (Z) and off "
+                 "screen "
+                 "(W): each a sum of 1, 2, 4 and 8 for the upper left, upper right, lower left and lower right one"},
+        {.name = "historyLength",
+         .channels = "Y",
+         .unit = "frames",
+         .range = ValueRange{0, 64},
+         .help = "Frames that make up a pixel's history"}};
 }
 
 VerdictImages verdictImages(CapturedTaps& taps) { return {taps.target("reprojection"), taps.target("refusals")}; }
@@ -93,7 +100,8 @@ void keepNoHistory(CapturedTaps& taps, Extent2 extent) {
 
 void AccumulatedInput::describe(ParameterVisitor& v) {
     v.toggle("temporal", enabled_,
-             {.label = "Temporal accumulation", .help = "Integrate over time before filtering, as SVGF does ([Schied17, sec. 5.1])"});
+             {.label = "Temporal accumulation",
+              .help = "Integrate over time before filtering, as SVGF does ([Schied17, sec. 5.1])"});
     v.when(enabled_, [&] { settings_.describe(v); });
 }
 

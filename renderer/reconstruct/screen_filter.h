@@ -7,8 +7,8 @@
 namespace lumi {
 
 /// A method that filters a frame's lighting in screen space, with the history of the frame before: demodulates the
-/// lighting, lets filter() make an image of it, antialiases that. It owns what such methods have in common, and keeps the
-/// transaction that Module asks for: history, taps and antialiasing advance together, or not at all.
+/// lighting, lets filter() make an image of it, antialiases that. It owns what such methods have in common, and keeps
+/// the transaction that Module asks for: history, taps and antialiasing advance together, or not at all.
 class ScreenFilter : public Module {
 public:
     void resize(Extent2 extent) final;
@@ -18,7 +18,9 @@ public:
     std::span<const Tap> taps() const final { return taps_.declared(); }
     const Image& tap(const std::string& name) const final;
     Lineage lineage() const final { return lineage_; }
-    bool keepsHistory(const Changes& changes) const final { return (accumulates() || antialiasing_.enabled()) && !changes.cut; }
+    bool keepsHistory(const Changes& changes) const final {
+        return (accumulates() || antialiasing_.enabled()) && !changes.cut;
+    }
     size_t byteCount() const override;
 
 protected:
@@ -65,8 +67,8 @@ TemporalOptions temporalOptions(const DemodulatedFrame& frame, CapturedTaps& tap
 /// The taps of a frame whose history nobody looked for.
 void keepNoHistory(CapturedTaps& taps, Extent2 extent);
 
-/// Temporal accumulation before another filter, as [Schied17, sec. 5.1] augments the methods it compares with: direct and
-/// indirect light together, and the parameter `temporal` that switches it off.
+/// Temporal accumulation before another filter, as [Schied17, sec. 5.1] augments the methods it compares with: direct
+/// and indirect light together, and the parameter `temporal` that switches it off.
 class AccumulatedInput {
 public:
     AccumulatedInput() { settings_.moments = false; }

@@ -37,9 +37,11 @@ std::vector<SampleRange> BlockRunner::nextRanges(uint64_t begin, uint64_t end) c
 }
 
 void BlockRunner::checkMemoryFor(uint64_t end) const {
-    const uint64_t needed = sampleBlocksBytes(state_.extent, end) + kOtherBytes * static_cast<uint64_t>(state_.extent.area());
+    const uint64_t needed =
+        sampleBlocksBytes(state_.extent, end) + kOtherBytes * static_cast<uint64_t>(state_.extent.area());
     const uint64_t held = state_.blocks.bytes();
-    checkMemory(fmt::format("a reference of {}x{}", state_.extent.width, state_.extent.height), needed > held ? needed - held : 0);
+    checkMemory(fmt::format("a reference of {}x{}", state_.extent.width, state_.extent.height),
+                needed > held ? needed - held : 0);
 }
 
 void BlockRunner::advanceTo(uint64_t begin, uint64_t end, const ReferenceProgress& progress) {

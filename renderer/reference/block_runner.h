@@ -12,7 +12,8 @@ class BlockRunner {
 public:
     /// `save` (may be empty) keeps `state` as it stands; it is called every few seconds, less often where that takes
     /// long, and when the run is stopped.
-    BlockRunner(BlockTracer& tracer, const ReferenceOptions& options, ReferenceState& state, std::function<void()> save);
+    BlockRunner(BlockTracer& tracer, const ReferenceOptions& options, ReferenceState& state,
+                std::function<void()> save);
 
     /// Traces samples up to `end`, a multiple of kLeafSamples; the first one, if there are no blocks yet, is `begin`.
     /// `progress.target` is told as it is. Throws Error(Interrupted), Error(Resources) if the sums do not fit.

@@ -9,7 +9,8 @@ namespace lumi {
 bool BlockTracer::sample(SampleRange range, const SignalSet& wanted, Signals& signals, std::stop_token stop) {
     if (!bound_) {
         try {
-            tracer_.bind(poseScene(spec_.scene, {spec_.time, spec_.time + spec_.openSeconds, spec_.time}, nullptr, stop), stop);
+            tracer_.bind(
+                poseScene(spec_.scene, {spec_.time, spec_.time + spec_.openSeconds, spec_.time}, nullptr, stop), stop);
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::Interrupted) throw;
             return false;

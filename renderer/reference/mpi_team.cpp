@@ -118,8 +118,9 @@ bool MpiTeam::serve(BlockTracer& own, std::stop_token stop) {
                 receiveBytes(key.data(), key.size(), 0, kOrders);
                 const std::string ownKey = referenceKeyText(own.spec());
                 if (key != ownKey)
-                    throw Error(ErrorKind::BadInput, {"process " + std::to_string(rank_) + " would make another image", "",
-                                                      "the same scene, program and --isa everywhere", keyDifference(key, ownKey)});
+                    throw Error(ErrorKind::BadInput,
+                                {"process " + std::to_string(rank_) + " would make another image", "",
+                                 "the same scene, program and --isa everywhere", keyDifference(key, ownKey)});
                 break;
             }
             case Order::Trace: {

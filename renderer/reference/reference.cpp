@@ -95,7 +95,8 @@ private:
     }
 
     void begin() {
-        std::optional<ReferenceState> kept = cache_->best(target_ > 0 ? target_ : ReferenceGoal::kMostSamples, target_ > 0);
+        std::optional<ReferenceState> kept =
+            cache_->best(target_ > 0 ? target_ : ReferenceGoal::kMostSamples, target_ > 0);
         if (!kept) return fresh();
         state_ = std::move(*kept);
         state_.goal = false;
@@ -127,7 +128,8 @@ private:
     void giveUp(uint64_t samples, double error) {
         target_ = samples;
         if (options_.log)
-            options_.log->warning(fmt::format("the error is still {:.3g} at {} samples a pixel, the most there are", error, samples));
+            options_.log->warning(
+                fmt::format("the error is still {:.3g} at {} samples a pixel, the most there are", error, samples));
     }
 
     void addTail(BlockRunner& runner) {

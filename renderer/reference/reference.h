@@ -18,9 +18,9 @@ namespace lumi {
 /// a Document.
 struct ReferenceSpec {
     std::shared_ptr<const Scene> scene;
-    std::string sceneKey;  ///< tells scenes apart: content digest, and edits to it as text
-    float time = 0;        ///< seconds
-    float openSeconds = 0; ///< that the shutter is open from then on
+    std::string sceneKey;   ///< tells scenes apart: content digest, and edits to it as text
+    float time = 0;         ///< seconds
+    float openSeconds = 0;  ///< that the shutter is open from then on
     CameraPose camera;
     CameraTrack cameraTrack;  ///< over the open shutter; empty: the camera stands still
     PathSettings path;
@@ -52,7 +52,8 @@ struct ReferenceOptions {
     /// Where references are kept; empty: nothing is kept. See defaultReferenceCache().
     std::filesystem::path cache;
     MessageLog* log = nullptr;  ///< damaged and foreign cache files are named here
-    std::function<void(const ReferenceProgress&)> progress{};  ///< called after every block of samples, on the calling thread
+    std::function<void(const ReferenceProgress&)>
+        progress{};  ///< called after every block of samples, on the calling thread
     std::stop_token stop{};
     BlockTeam* team = nullptr;  ///< other processes that trace blocks of samples (block_team.h); null: this one alone
 };
@@ -61,31 +62,32 @@ struct ReferenceOptions {
 struct Reference {
     Image image;  ///< RGB, scene-linear: the mean of all samples
     /// Means of the first and of the second half of the samples (of each power-of-two block of them); empty below 32
-    /// samples. Their errors have about the same size, so that half of their difference, in the mean over pixels, is the
-    /// error of `image`; with Sobol samples rather more, since two halves together are better stratified than apart.
+    /// samples. Their errors have about the same size, so that half of their difference, in the mean over pixels, is
+    /// the error of `image`; with Sobol samples rather more, since two halves together are better stratified than
+    /// apart.
     Image halves[2];
     Image standardError;  ///< of each pixel's luminance, from 16 to 31 blocks of samples; empty below 256 samples
     Image depth;          ///< Z, linear view depth of each pixel's first sample; +inf on the sky
     uint64_t samples = 0;
-    /// Relative standard error: root of the mean over pixels of (standard error)^2 / (luminance^2 + 0.001); NaN below 256
-    /// samples. relMSE adds three channels up, so the reference's own part in it is about three times the square.
+    /// Relative standard error: root of the mean over pixels of (standard error)^2 / (luminance^2 + 0.001); NaN below
+    /// 256 samples. relMSE adds three channels up, so the reference's own part in it is about three times the square.
     double error = 0;
     bool cached = false;         ///< nothing had to be traced
     std::filesystem::path file;  ///< where it is kept; empty without a cache
 };
 
-/// The reference from the cache, or traced from where the cache has come to, and kept there. The same spec and goal give
-/// the same bits whatever was interrupted, resumed or done on how many threads; image equals the accumulate module's mean
-/// of one frame of as many samples. Several processes may ask for one reference: one traces, the others wait.
-/// Throws Error(Interrupted) if stopped, Error(Resources) if it does not fit the memory limit or the disk is full; what is
-/// done so far is kept. After SIGKILL at most the last seconds are lost.
+/// The reference from the cache, or traced from where the cache has come to, and kept there. The same spec and goal
+/// give the same bits whatever was interrupted, resumed or done on how many threads; image equals the accumulate
+/// module's mean of one frame of as many samples. Several processes may ask for one reference: one traces, the others
+/// wait. Throws Error(Interrupted) if stopped, Error(Resources) if it does not fit the memory limit or the disk is
+/// full; what is done so far is kept. After SIGKILL at most the last seconds are lost.
 Reference makeReference(const ReferenceSpec& spec, const ReferenceGoal& goal, const ReferenceOptions& options);
 
 /// `$XDG_CACHE_HOME/lumiscope/references`, else `~/.cache/lumiscope/references`; empty if neither is set.
 std::filesystem::path defaultReferenceCache();
 
-/// Name under which the cache keeps references of this spec: a digest of the spec, the instruction set in use, the sources
-/// that the image depends on, and the compiler, its flags and the libraries.
+/// Name under which the cache keeps references of this spec: a digest of the spec, the instruction set in use, the
+/// sources that the image depends on, and the compiler, its flags and the libraries.
 std::string referenceKey(const ReferenceSpec& spec);
 
 }  // namespace lumi

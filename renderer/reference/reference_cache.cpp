@@ -29,10 +29,10 @@ FileLock::FileLock(const fs::path& path, std::stop_token stop, const std::functi
     std::error_code failure;
     fs::create_directories(path.parent_path(), failure);
     file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (file_ < 0)
-        throwUsage({std::string("cannot be written (") + std::strerror(errno) + ")", path.string(), "", ""});
+    if (file_ < 0) throwUsage({std::string("cannot be written (") + std::strerror(errno) + ")", path.string(), "", ""});
     while (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
-        if (errno != EWOULDBLOCK && errno != EINTR) return;  // a file system without locks: writes are whole all the same
+        if (errno != EWOULDBLOCK && errno != EINTR)
+            return;  // a file system without locks: writes are whole all the same
         if (stop.stop_requested()) {
             ::close(file_);
             throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
@@ -98,8 +98,8 @@ std::optional<ReferenceState> ReferenceCache::best(uint64_t most, bool exactly) 
             if (state.key != keyText_ || state.samples() != samples ||
                 (!state.blocks.empty() && state.blocks.range().begin != 0)) {
                 const std::string difference = keyDifference(keyText_, state.key);
-                tell(path.string() + ": belongs to another image" + (difference.empty() ? "" : " (" + difference + ")") +
-                     "; it is not used");
+                tell(path.string() + ": belongs to another image" +
+                     (difference.empty() ? "" : " (" + difference + ")") + "; it is not used");
                 continue;
             }
             if (samples == most && exactly) return state;

@@ -37,8 +37,8 @@ public:
     std::filesystem::path lockFile() const { return folder_ / "lock"; }
     /// Removes what killed processes were writing. Call with the lock held.
     void removeLeftovers() const;
-    /// The state with most samples, but not more than `most`; nothing if there is none. Of `exactly` that many samples a
-    /// state with a tail will do, else its tail is dropped.
+    /// The state with most samples, but not more than `most`; nothing if there is none. Of `exactly` that many samples
+    /// a state with a tail will do, else its tail is dropped.
     std::optional<ReferenceState> best(uint64_t most, bool exactly) const;
     /// What the files know of the ladder, ascending by samples.
     std::vector<std::pair<uint64_t, double>> ladder() const;

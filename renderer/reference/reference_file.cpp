@@ -1,6 +1,6 @@
-// Layout: 8 bytes of magic; version, length and digest of the head as 64-bit little-endian integers; the head as JSON, then the
-// planes of each block (sum, left, scatter), of the tail and the depth as they lie in memory, then a 64-bit digest of all
-// before it, piece by piece.
+// Layout: 8 bytes of magic; version, length and digest of the head as 64-bit little-endian integers; the head as JSON,
+// then the planes of each block (sum, left, scatter), of the tail and the depth as they lie in memory, then a 64-bit
+// digest of all before it, piece by piece.
 #include "reference/reference_file.h"
 
 #include <fcntl.h>
@@ -44,9 +44,9 @@ json headOf(const ReferenceState& state) {
     json blocks = json::array(), ladder = json::array();
     for (const SampleBlock& block : state.blocks.blocks()) blocks.push_back({block.first, block.count});
     for (const auto& [samples, error] : state.ladder) ladder.push_back({samples, error});
-    return {{"key", state.key},       {"width", state.extent.width},      {"height", state.extent.height},
-            {"blocks", blocks},       {"tail", state.tailCount},          {"ladder", ladder},
-            {"goal", state.goal},     {"note", state.note}};
+    return {{"key", state.key},   {"width", state.extent.width}, {"height", state.extent.height},
+            {"blocks", blocks},   {"tail", state.tailCount},     {"ladder", ladder},
+            {"goal", state.goal}, {"note", state.note}};
 }
 
 [[noreturn]] void throwDamaged(const fs::path& path, const std::string& how) {
@@ -56,7 +56,8 @@ json headOf(const ReferenceState& state) {
 /// A file that appears under its name only when all of it is on the disk.
 class DurableFile {
 public:
-    explicit DurableFile(const fs::path& path) : path_(path), temporary_(path.string() + fmt::format(".{}.tmp", getpid())) {
+    explicit DurableFile(const fs::path& path)
+        : path_(path), temporary_(path.string() + fmt::format(".{}.tmp", getpid())) {
         file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
         if (file_ < 0) fail();
     }
@@ -93,7 +94,8 @@ public:
 private:
     [[noreturn]] void fail() const {
         const int code = errno;
-        const ErrorKind kind = code == ENOSPC || code == EDQUOT || code == EFBIG ? ErrorKind::Resources : ErrorKind::Usage;
+        const ErrorKind kind =
+            code == ENOSPC || code == EDQUOT || code == EFBIG ? ErrorKind::Resources : ErrorKind::Usage;
         throw Error(kind, {std::string("cannot be written (") + std::strerror(code) + ")", path_.string(), "", ""});
     }
 
@@ -147,11 +149,13 @@ Head readHead(Reader& reader, const fs::path& path) {
         throwBadInput({"holds no block sums of a reference", path.string(), "a file that `reference` wrote", ""});
     reader.read(numbers, 3);
     if (numbers[0] != kVersion)
-        throwBadInput({"was written by another version", path.string(), std::to_string(kVersion), std::to_string(numbers[0])});
+        throwBadInput(
+            {"was written by another version", path.string(), std::to_string(kVersion), std::to_string(numbers[0])});
     if (numbers[1] > kMostHeadBytes || numbers[1] > reader.left()) throwDamaged(path, "its head is too long");
     std::string text(numbers[1], '\0');
     reader.read(text.data(), text.size());
-    if (digest64(bytesOf(text.data(), text.size())) != numbers[2]) throwDamaged(path, "its head does not fit its digest");
+    if (digest64(bytesOf(text.data(), text.size())) != numbers[2])
+        throwDamaged(path, "its head does not fit its digest");
     Head head;
     try {
         const json value = json::parse(text);
@@ -181,7 +185,8 @@ bool plausible(const Head& head) {
     uint64_t end = head.blocks.empty() ? 0 : head.blocks.front().begin;
     for (const SampleRange& block : head.blocks) {
         if (block.begin != end || block.end <= block.begin || block.end > uint64_t(1) << 40) return false;
-        if (block.count() % kLeafSamples != 0 || !std::has_single_bit(block.count()) || block.begin % block.count() != 0)
+        if (block.count() % kLeafSamples != 0 || !std::has_single_bit(block.count()) ||
+            block.begin % block.count() != 0)
             return false;
         end = block.end;
     }
@@ -219,8 +224,9 @@ ReferenceState readReferenceFile(const fs::path& path) {
     if (state.tailCount > 0) expected += pixels * 3 * sizeof(double);
     for (const SampleRange& range : head.blocks) {
         const SampleBlock block{range.begin, range.count(), {}, {}, {}};
-        expected += pixels * (3 * sizeof(double) + (block.level() > 0 ? 3 * sizeof(float) : 0) +
-                              static_cast<uint64_t>(std::min(block.level(), SampleBlock::kScatterDepths)) * sizeof(float));
+        expected +=
+            pixels * (3 * sizeof(double) + (block.level() > 0 ? 3 * sizeof(float) : 0) +
+                      static_cast<uint64_t>(std::min(block.level(), SampleBlock::kScatterDepths)) * sizeof(float));
     }
     if (reader.left() != expected) throwDamaged(path, "its length is wrong");
     checkMemory("reading " + path.string(), expected);
@@ -250,7 +256,8 @@ ReferenceState readReferenceHead(const fs::path& path, SampleRange* range) {
     Reader reader(path);
     Head head = readHead(reader, path);
     if (!plausible(head)) throwDamaged(path, "its blocks make no sense");
-    if (range) *range = head.blocks.empty() ? SampleRange() : SampleRange{head.blocks.front().begin, head.blocks.back().end};
+    if (range)
+        *range = head.blocks.empty() ? SampleRange() : SampleRange{head.blocks.front().begin, head.blocks.back().end};
     return std::move(head.state);
 }
 

@@ -17,7 +17,8 @@ namespace {
 std::string rangeText(SampleRange range) { return fmt::format("{}..{}", range.begin, range.end); }
 
 /// What an interrupted call left, if it is of this image and begins where it should.
-bool resume(const fs::path& partial, const std::string& key, SampleRange range, ReferenceState& state, MessageLog* log) {
+bool resume(const fs::path& partial, const std::string& key, SampleRange range, ReferenceState& state,
+            MessageLog* log) {
     std::error_code failure;
     if (!fs::exists(partial, failure)) return false;
     try {
@@ -47,7 +48,8 @@ std::vector<Part> orderedParts(std::span<const fs::path> files) {
         Part part{file, {}, {}};
         part.head = readReferenceHead(file, &part.range);
         if (part.head.tailCount > 0 || part.range.count() == 0)
-            throwBadInput({"is not a part", file.string(), fmt::format("samples in multiples of {}", kLeafSamples), ""});
+            throwBadInput(
+                {"is not a part", file.string(), fmt::format("samples in multiples of {}", kLeafSamples), ""});
         parts.push_back(std::move(part));
     }
     std::stable_sort(parts.begin(), parts.end(),
@@ -55,12 +57,13 @@ std::vector<Part> orderedParts(std::span<const fs::path> files) {
     for (size_t i = 1; i < parts.size(); ++i) {
         const Part &before = parts[i - 1], &part = parts[i];
         if (part.head.key != before.head.key)
-            throwBadInput({"belongs to another image than " + before.file.string(), part.file.string(), "one key for all parts",
-                           keyDifference(before.head.key, part.head.key)});
+            throwBadInput({"belongs to another image than " + before.file.string(), part.file.string(),
+                           "one key for all parts", keyDifference(before.head.key, part.head.key)});
         if (part.range.begin != before.range.end)
             throwBadInput({part.range.begin < before.range.end ? "overlaps " + before.file.string()
                                                                : "samples are missing after " + before.file.string(),
-                           part.file.string(), fmt::format("samples from {} on", before.range.end), rangeText(part.range)});
+                           part.file.string(), fmt::format("samples from {} on", before.range.end),
+                           rangeText(part.range)});
     }
     return parts;
 }

@@ -45,7 +45,8 @@ struct Hermite {
 /// the slope of the end span. Rotations follow the shorter way from key to key, then are made unit.
 void evaluateCatmullRom(const AnimationChannel& channel, const Span& span, float* out) {
     const size_t n = static_cast<size_t>(channel.components), last = channel.times.size() - 1;
-    const size_t keys[4] = {span.first > 0 ? span.first - 1 : 0, span.first, span.second, std::min(span.second + 1, last)};
+    const size_t keys[4] = {span.first > 0 ? span.first - 1 : 0, span.first, span.second,
+                            std::min(span.second + 1, last)};
     const bool rotation = channel.property == AnimatedProperty::Rotation;
     float sign[4] = {1, 1, 1, 1};
     for (int k = 1; rotation && k < 4; ++k) {

@@ -37,7 +37,8 @@ std::string withoutPrefix(const std::string& name) { return name.substr(kPrefix.
 fs::path pathOf(const std::string& name) {
     std::optional<fs::path> path = pathInside(assetFolder(), withoutPrefix(name));
     if (!path)
-        throwBadInput({"the file name \"" + name + "\" leads out of the folder of assets", "", "a path under $LUMISCOPE_ASSETS", ""});
+        throwBadInput({"the file name \"" + name + "\" leads out of the folder of assets", "",
+                       "a path under $LUMISCOPE_ASSETS", ""});
     return *std::move(path);
 }
 

@@ -17,18 +17,38 @@ void Camera::describe(ParameterVisitor& v) {
               .redo = Redo::Samples});
     v.when(projection == Projection::Perspective, [&] {
         v.number("fov-y-deg", fovYDeg,
-                 {.label = "Field of view", .min = 1, .max = 170, .unit = "deg", .help = "Full vertical angle.", .redo = Redo::Samples});
+                 {.label = "Field of view",
+                  .min = 1,
+                  .max = 170,
+                  .unit = "deg",
+                  .help = "Full vertical angle.",
+                  .redo = Redo::Samples});
     });
     v.when(projection == Projection::Orthographic, [&] {
         v.number("y-mag", yMag,
-                 {.label = "Half height", .min = 1e-4, .max = 1e6, .scale = Scale::Log, .unit = "m",
-                  .help = "Half the height that the image shows.", .redo = Redo::Samples});
+                 {.label = "Half height",
+                  .min = 1e-4,
+                  .max = 1e6,
+                  .scale = Scale::Log,
+                  .unit = "m",
+                  .help = "Half the height that the image shows.",
+                  .redo = Redo::Samples});
     });
     v.number("aperture", aperture,
-             {.label = "Aperture", .min = 0, .max = 10, .unit = "m", .help = "Radius of the lens; 0 is a pinhole.", .redo = Redo::Samples});
+             {.label = "Aperture",
+              .min = 0,
+              .max = 10,
+              .unit = "m",
+              .help = "Radius of the lens; 0 is a pinhole.",
+              .redo = Redo::Samples});
     v.number("focus", focus,
-             {.label = "Focus", .min = 1e-3, .max = 1e6, .scale = Scale::Log, .unit = "m",
-              .help = "Distance to the plane in focus.", .redo = Redo::Samples});
+             {.label = "Focus",
+              .min = 1e-3,
+              .max = 1e6,
+              .scale = Scale::Log,
+              .unit = "m",
+              .help = "Distance to the plane in focus.",
+              .redo = Redo::Samples});
     v.when(aperture > 0, [&] {
         v.choice("aperture-shape", apertureShape,
                  {.label = "Aperture shape",
@@ -36,15 +56,23 @@ void Camera::describe(ParameterVisitor& v) {
                   .help = "What small bright things look like out of focus: a disk or a polygon.",
                   .redo = Redo::Samples});
         v.when(apertureShape == ApertureShape::Bladed, [&] {
-            v.integer("aperture-blades", apertureBlades,
-                      {.label = "Blades", .min = 3, .max = 16, .help = "Corners of the aperture.", .redo = Redo::Samples});
+            v.integer(
+                "aperture-blades", apertureBlades,
+                {.label = "Blades", .min = 3, .max = 16, .help = "Corners of the aperture.", .redo = Redo::Samples});
             v.number("aperture-rotation-deg", apertureRotationDeg,
-                     {.label = "Blade rotation", .min = -180, .max = 180, .unit = "deg",
-                      .help = "Turns the aperture about the view direction.", .redo = Redo::Samples});
+                     {.label = "Blade rotation",
+                      .min = -180,
+                      .max = 180,
+                      .unit = "deg",
+                      .help = "Turns the aperture about the view direction.",
+                      .redo = Redo::Samples});
         });
     });
     v.number("shutter", shutter,
-             {.label = "Shutter", .min = 0, .max = 60, .unit = "frames",
+             {.label = "Shutter",
+              .min = 0,
+              .max = 60,
+              .unit = "frames",
               .help = "How long the shutter is open from the frame's time on, in frames: 0.5 is film's half turn, 0 an "
                       "instant without motion blur.",
               .redo = Redo::Build});
@@ -55,8 +83,13 @@ void Camera::describe(ParameterVisitor& v) {
               .redo = Redo::Samples});
     v.when(eyeOfPair != StereoEye::Centre, [&] {
         v.number("interaxial", interaxial,
-                 {.label = "Interaxial", .min = 1e-4, .max = 100, .scale = Scale::Log, .unit = "m",
-                  .help = "Distance between the two eyes.", .redo = Redo::Samples});
+                 {.label = "Interaxial",
+                  .min = 1e-4,
+                  .max = 100,
+                  .scale = Scale::Log,
+                  .unit = "m",
+                  .help = "Distance between the two eyes.",
+                  .redo = Redo::Samples});
     });
 }
 
@@ -75,8 +108,8 @@ Mat4 rigidInverse(const Mat4& frame) {
 Vec3 CameraPose::project(const Vec3& positionWorld) const {
     const Vec3 p = transformPoint(cameraFromWorld, positionWorld);
     const float depth = -p.z;
-    const float scale = static_cast<float>(extent.height) /
-                        (2 * halfHeight * (projection == Projection::Perspective ? depth : 1.0f));
+    const float scale =
+        static_cast<float>(extent.height) / (2 * halfHeight * (projection == Projection::Perspective ? depth : 1.0f));
     return {0.5f * static_cast<float>(extent.width) + p.x * scale,
             0.5f * static_cast<float>(extent.height) - p.y * scale, depth};
 }
@@ -93,7 +126,8 @@ CameraPose poseCamera(const Camera& camera, Extent2 extent) {
     pose.cameraFromWorld = rigidInverse(pose.worldFromCamera);
     pose.extent = extent;
     pose.projection = camera.projection;
-    pose.halfHeight = camera.projection == Projection::Perspective ? std::tan(0.5f * radians(camera.fovYDeg)) : camera.yMag;
+    pose.halfHeight =
+        camera.projection == Projection::Perspective ? std::tan(0.5f * radians(camera.fovYDeg)) : camera.yMag;
     pose.aperture = camera.aperture;
     pose.focus = camera.focus;
     pose.blades = camera.apertureShape == ApertureShape::Bladed ? camera.apertureBlades : 0;

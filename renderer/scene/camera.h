@@ -15,16 +15,16 @@ struct Camera {
     std::string name = "default";
     Vec3 eye{0, 0, 5}, target{0}, up{0, 1, 0};
     Projection projection = Projection::Perspective;
-    float fovYDeg = 45;     ///< perspective: full vertical angle
-    float yMag = 1;         ///< orthographic: half the visible height in metres
-    float aperture = 0;     ///< lens radius in metres; 0 is a pinhole
-    float focus = 5;        ///< metres to the plane in focus
+    float fovYDeg = 45;  ///< perspective: full vertical angle
+    float yMag = 1;      ///< orthographic: half the visible height in metres
+    float aperture = 0;  ///< lens radius in metres; 0 is a pinhole
+    float focus = 5;     ///< metres to the plane in focus
     ApertureShape apertureShape = ApertureShape::Round;
-    int apertureBlades = 6;             ///< bladed: corners of the regular polygon inside the lens
-    float apertureRotationDeg = 0;      ///< bladed: counter-clockwise as seen from behind the camera
-    float shutter = 0;                  ///< how long it is open, in frames; 0: an instant
+    int apertureBlades = 6;         ///< bladed: corners of the regular polygon inside the lens
+    float apertureRotationDeg = 0;  ///< bladed: counter-clockwise as seen from behind the camera
+    float shutter = 0;              ///< how long it is open, in frames; 0: an instant
     StereoEye eyeOfPair = StereoEye::Centre;
-    float interaxial = 0.064f;          ///< metres between the two eyes of a stereo pair
+    float interaxial = 0.064f;  ///< metres between the two eyes of a stereo pair
     bool operator==(const Camera&) const = default;
 
     /// Everything a user can move: eye, look-at, up, projection, fov-y-deg, y-mag, aperture, focus, shutter, ...
@@ -39,9 +39,9 @@ struct CameraPose {
     Projection projection = Projection::Perspective;
     float halfHeight = 0.41421356f;  ///< perspective: tan(fovY/2); orthographic: metres
     float aperture = 0, focus = 5;
-    int blades = 0;            ///< corners of the aperture; 0: round
-    float bladeRotation = 0;   ///< radians
-    float shutter = 0;         ///< frames that the shutter is open
+    int blades = 0;           ///< corners of the aperture; 0: round
+    float bladeRotation = 0;  ///< radians
+    float shutter = 0;        ///< frames that the shutter is open
 
     Vec3 position() const { return Vec3(worldFromCamera[3]); }
     Vec3 forward() const { return -Vec3(worldFromCamera[2]); }
@@ -60,7 +60,8 @@ CameraPose poseCamera(const Camera& camera, Extent2 extent);
 /// A camera on its way from `a` to `b`, `t` from 0 to 1: rotation on the shorter arc, all else straight.
 CameraPose interpolate(const CameraPose& a, const CameraPose& b, float t);
 
-/// A camera over the time that its shutter is open: poses at equally spaced moments, or a single one if it stands still.
+/// A camera over the time that its shutter is open: poses at equally spaced moments, or a single one if it stands
+/// still.
 using CameraTrack = std::vector<CameraPose>;
 
 }  // namespace lumi

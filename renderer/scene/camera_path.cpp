@@ -64,7 +64,8 @@ void checkKeys(const CameraPath& path, const std::string& where) {
         const std::string at = fmt::format("{}: key {}", where, i);
         if (key.time < 0 || (i > 0 && key.time <= path.keys[i - 1].time))
             throwBroken("times do not ascend from 0 on", at);
-        if (key.fovYDeg < 1 || key.fovYDeg > 170) throwBroken("the field of view is out of range", at, "1 to 170 degrees");
+        if (key.fovYDeg < 1 || key.fovYDeg > 170)
+            throwBroken("the field of view is out of range", at, "1 to 170 degrees");
         if (!(key.focus > 0)) throwBroken("the distance in focus is not above 0", at);
         if (key.eye == key.target) throwBroken("the eye is where it looks at", at);
     }
@@ -131,9 +132,9 @@ Json instantNgpKey(const SceneCamera::Key& key, float aperture) {
     const Vec3 right = glm::normalize(glm::cross(forward, up)), down = glm::cross(forward, right);
     const glm::quat r = glm::normalize(glm::quat_cast(Mat3(right, down, forward)));
     const float distance = glm::length(key.target - key.eye);
-    return {{"R", {r.x, r.y, r.z, r.w}}, {"T", jsonOf(key.eye)},       {"slice", key.focus - distance},
-            {"scale", distance},         {"fov", key.fovYDeg},         {"aperture_size", aperture},
-            {"timestamp", key.time},     {"glow_mode", 0},             {"glow_y_cutoff", 0.0}};
+    return {{"R", {r.x, r.y, r.z, r.w}}, {"T", jsonOf(key.eye)}, {"slice", key.focus - distance},
+            {"scale", distance},         {"fov", key.fovYDeg},   {"aperture_size", aperture},
+            {"timestamp", key.time},     {"glow_mode", 0},       {"glow_y_cutoff", 0.0}};
 }
 
 }  // namespace
@@ -188,7 +189,7 @@ std::string formatCameraPath(const CameraPath& path, CameraPathFormat format) {
 CameraPathFormat cameraPathFormatOf(const std::filesystem::path& file) {
     const std::string stem = file.stem().string();
     return stem.size() > 4 && stem.compare(stem.size() - 4, 4, ".ngp") == 0 ? CameraPathFormat::InstantNgp
-                                                                             : CameraPathFormat::Lumiscope;
+                                                                            : CameraPathFormat::Lumiscope;
 }
 
 CameraPath cameraPathOf(const Scene& scene, int camera, float fps) {
@@ -197,7 +198,8 @@ CameraPath cameraPathOf(const Scene& scene, int camera, float fps) {
     path.aperture = source.camera.aperture;
     if (source.node < 0 && source.keys.size() > 1) {
         path.keys = source.keys;
-        path.interpolation = source.interpolation == Interpolation::Linear ? Interpolation::Linear : Interpolation::CatmullRom;
+        path.interpolation =
+            source.interpolation == Interpolation::Linear ? Interpolation::Linear : Interpolation::CatmullRom;
         return path;
     }
     const int frames = source.node >= 0 ? static_cast<int>(scene.duration() * fps) : 0;

@@ -52,17 +52,40 @@ Image paint(const Radiance& radiance) {
 }  // namespace
 
 void Sky::describe(ParameterVisitor& v) {
-    v.number("radiance", radiance, {.label = "Radiance", .min = 0, .max = 1e5,
-                                    .help = "Mean luminance over the whole sphere, W/(m^2 sr).", .redo = Redo::Build});
-    v.number("sun-elevation-deg", sunElevationDeg, {.label = "Sun elevation", .min = -90, .max = 90, .unit = "deg",
-                                                    .help = "Above the horizon.", .redo = Redo::Build});
-    v.number("sun-azimuth-deg", sunAzimuthDeg, {.label = "Sun azimuth", .min = -360, .max = 360, .unit = "deg",
-                                                .help = "Counter-clockwise from +Z seen from above.",
-                                                .redo = Redo::Build});
-    v.number("sun-share", sunShare, {.label = "Sun's share", .min = 0, .max = 1,
-                                     .help = "Of all light, the part that comes from the sun.", .redo = Redo::Build});
-    v.number("sun-size-deg", sunSizeDeg, {.label = "Sun size", .min = 1, .max = 60, .scale = Scale::Log, .unit = "deg",
-                                          .help = "Radius at which the sun has fallen to 1/e.", .redo = Redo::Build});
+    v.number("radiance", radiance,
+             {.label = "Radiance",
+              .min = 0,
+              .max = 1e5,
+              .help = "Mean luminance over the whole sphere, W/(m^2 sr).",
+              .redo = Redo::Build});
+    v.number("sun-elevation-deg", sunElevationDeg,
+             {.label = "Sun elevation",
+              .min = -90,
+              .max = 90,
+              .unit = "deg",
+              .help = "Above the horizon.",
+              .redo = Redo::Build});
+    v.number("sun-azimuth-deg", sunAzimuthDeg,
+             {.label = "Sun azimuth",
+              .min = -360,
+              .max = 360,
+              .unit = "deg",
+              .help = "Counter-clockwise from +Z seen from above.",
+              .redo = Redo::Build});
+    v.number("sun-share", sunShare,
+             {.label = "Sun's share",
+              .min = 0,
+              .max = 1,
+              .help = "Of all light, the part that comes from the sun.",
+              .redo = Redo::Build});
+    v.number("sun-size-deg", sunSizeDeg,
+             {.label = "Sun size",
+              .min = 1,
+              .max = 60,
+              .scale = Scale::Log,
+              .unit = "deg",
+              .help = "Radius at which the sun has fallen to 1/e.",
+              .redo = Redo::Build});
     v.colour("zenith", zenith, {.label = "Zenith", .help = "Colour overhead.", .redo = Redo::Build});
     v.colour("horizon", horizon, {.label = "Horizon", .help = "Colour above the horizon.", .redo = Redo::Build});
     v.colour("ground", ground, {.label = "Ground", .help = "Colour below the horizon.", .redo = Redo::Build});
@@ -74,11 +97,11 @@ Image Sky::build() const {
         return glm::mix(ground, above, smooth(-0.06f, 0.02f, d.y));
     });
     const float elevation = radians(sunElevationDeg), azimuth = radians(sunAzimuthDeg);
-    const Vec3 sun(std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth));
+    const Vec3 sun(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+                   std::cos(elevation) * std::cos(azimuth));
     const float sharpness = 1 / (1 - std::cos(radians(sunSizeDeg)));
-    const Image glow = paint([&](const Vec3& d) {
-        return Vec3(1.0f, 0.93f, 0.82f) * std::exp(sharpness * (glm::dot(d, sun) - 1));
-    });
+    const Image glow =
+        paint([&](const Vec3& d) { return Vec3(1.0f, 0.93f, 0.82f) * std::exp(sharpness * (glm::dot(d, sun) - 1)); });
     const double domeMean = meanLuminance(dome), glowMean = meanLuminance(glow);
     const auto domeScale = static_cast<float>(domeMean > 0 ? radiance * (1 - sunShare) / domeMean : 0);
     const auto glowScale = static_cast<float>(glowMean > 0 ? radiance * sunShare / glowMean : 0);

@@ -179,9 +179,7 @@ bool standInside(const Vec3& centre, const Vec3& half, const FirstHits& hits, Ca
 
 }  // namespace
 
-float enclosure(const Scene& scene, const Vec3& origin) {
-    return enclosureOf(lookAround(scene, origin));
-}
+float enclosure(const Scene& scene, const Vec3& origin) { return enclosureOf(lookAround(scene, origin)); }
 
 Camera defaultCamera(const Scene& scene, std::stop_token stop) {
     Camera camera;
@@ -219,7 +217,8 @@ bool hasLight(const Scene& scene) {
 }
 
 void addDefaults(Scene& scene, MessageLog& log, bool allowSky, std::stop_token stop) {
-    if (scene.cameras.empty()) scene.cameras.push_back({defaultCamera(scene, std::move(stop)), -1, {}, Interpolation::CatmullRom});
+    if (scene.cameras.empty())
+        scene.cameras.push_back({defaultCamera(scene, std::move(stop)), -1, {}, Interpolation::CatmullRom});
     if (!allowSky || hasLight(scene)) return;
     scene.environment.image = std::make_shared<const Image>(makeDefaultSky());
     log.warning(scene.path + ": no light and no emission; lit by the built-in sky");

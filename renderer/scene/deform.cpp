@@ -22,7 +22,8 @@ void morphRange(const Mesh& mesh, std::span<const float> weights, size_t begin, 
         addScaled(out.normals, target.normals, weights[t], begin, end);
         addScaled(out.tangents, target.tangents, weights[t], begin, end);
     }
-    for (size_t i = begin; i < end && !out.normals.empty(); ++i) out.normals[i] = unitOr(out.normals[i], mesh.normals[i]);
+    for (size_t i = begin; i < end && !out.normals.empty(); ++i)
+        out.normals[i] = unitOr(out.normals[i], mesh.normals[i]);
     for (size_t i = begin; i < end && !out.tangents.empty(); ++i)
         out.tangents[i] = unitOr(out.tangents[i], Vec3(mesh.tangents[i]));
 }

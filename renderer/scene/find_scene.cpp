@@ -60,7 +60,8 @@ std::vector<SceneEntry> listScenes() {
         std::error_code ignored;
         for (const fs::directory_entry& file : fs::directory_iterator(folder, ignored)) {
             const std::string name = file.path().stem().string();
-            const bool known = std::any_of(entries.begin(), entries.end(), [&](const auto& e) { return e.name == name; });
+            const bool known =
+                std::any_of(entries.begin(), entries.end(), [&](const auto& e) { return e.name == name; });
             if (!known && isSceneFile(file.path())) entries.push_back({name, "", file.path(), ""});
         }
     }
@@ -86,7 +87,8 @@ fs::path findScene(const std::string& name) {
         std::error_code ignored;
         const fs::file_status status = fs::status(path, ignored);
         if (!fs::exists(status)) throwBadInput({"no such file", name, "", ""});
-        throwBadInput({fs::is_directory(status) ? "is a directory" : "is not a regular file", name, "a scene file", ""});
+        throwBadInput(
+            {fs::is_directory(status) ? "is a directory" : "is not a regular file", name, "a scene file", ""});
     }
     for (const fs::path& folder : sceneFolders())
         if (const fs::path candidate = folder / (name + ".json"); isSceneFile(candidate)) return candidate;

@@ -45,7 +45,8 @@ ParameterValue parameterValue(const ParameterInfo& info, const JsonTree& tree, c
             return readVector(tree, value, info.id);
         case ParameterType::Vector: return readVector(tree, value, info.id);
         case ParameterType::Choice:
-            if (!value.isString() || std::find(info.options.begin(), info.options.end(), value.text) == info.options.end())
+            if (!value.isString() ||
+                std::find(info.options.begin(), info.options.end(), value.text) == info.options.end())
                 refuseValue(tree, value, info.id, quotedList(info.options));
             return value.text;
         case ParameterType::Text: return readText(tree, value, info.id);
@@ -87,7 +88,8 @@ std::string readText(const JsonTree& tree, const JsonValue& value, const std::st
 double readNumber(const JsonTree& tree, const JsonValue& value, const std::string& name, double min, double max) {
     if (!value.isNumber()) refuseValue(tree, value, name, "a number");
     // Limits may be floats: 0.1f is a little above 0.1. Values are kept as floats, so they must fit one.
-    if (value.number < min - 1e-6 * std::abs(min) || value.number > max + 1e-6 * std::abs(max)) refuseValue(tree, value, name, rangeText(min, max));
+    if (value.number < min - 1e-6 * std::abs(min) || value.number > max + 1e-6 * std::abs(max))
+        refuseValue(tree, value, name, rangeText(min, max));
     if (std::abs(value.number) > 3.4e38) refuseValue(tree, value, name, "at most 3.4e38");
     return value.number;
 }

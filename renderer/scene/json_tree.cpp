@@ -50,7 +50,8 @@ public:
 
     bool Null() { return add(JsonValue::Type::Null, stream_.Tell() - 4); }
     bool Bool(bool value) {
-        return add(JsonValue::Type::Boolean, stream_.Tell() - (value ? 4 : 5), [&](JsonValue& v) { v.boolean = value; });
+        return add(JsonValue::Type::Boolean, stream_.Tell() - (value ? 4 : 5),
+                   [&](JsonValue& v) { v.boolean = value; });
     }
     bool RawNumber(const char* token, rapidjson::SizeType length, bool) {
         return add(JsonValue::Type::Number, stream_.Tell() - length, [&](JsonValue& v) {

@@ -17,9 +17,9 @@ struct JsonValue {
     Type type = Type::Null;
     TextPosition at;
     bool boolean = false;
-    double number = 0;             ///< finite
-    std::string text;              ///< a string's contents, a number as it is written
-    std::vector<JsonValue> items;  ///< of an array
+    double number = 0;                ///< finite
+    std::string text;                 ///< a string's contents, a number as it is written
+    std::vector<JsonValue> items;     ///< of an array
     std::vector<JsonMember> members;  ///< of an object, in document order, keys unique
 
     bool isNumber() const { return type == Type::Number; }

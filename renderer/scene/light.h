@@ -17,16 +17,16 @@ enum class LightType : uint8_t { Point, Spot, Directional, Rectangle, Disk, Sphe
 struct Light {
     std::string name;
     LightType type = LightType::Point;
-    Vec3 intensity{1};   ///< point, spot: W/sr
-    Vec3 irradiance{1};  ///< directional: W/m^2 on a plane facing it
-    Vec3 radiance{1};    ///< rectangle, disk, sphere: W/(m^2 sr), one-sided for the flat ones
+    Vec3 intensity{1};        ///< point, spot: W/sr
+    Vec3 irradiance{1};       ///< directional: W/m^2 on a plane facing it
+    Vec3 radiance{1};         ///< rectangle, disk, sphere: W/(m^2 sr), one-sided for the flat ones
     Texture radianceTexture;  ///< rectangle, disk: RGB (sRGB) times radiance, upright as seen from where it shines
-    float range = kInfinity;           ///< point, spot: no light beyond; KHR_lights_punctual's fall-off window
+    float range = kInfinity;  ///< point, spot: no light beyond; KHR_lights_punctual's fall-off window
     float innerConeDeg = 0, outerConeDeg = 45;  ///< spot: half-angles
-    float angleDeg = 0;  ///< directional: full angular diameter; 0 is a delta
-    Vec2 size{1};        ///< rectangle: full width and height, metres
-    float radius = 0.5f; ///< sphere, disk: metres
-    int node = -1;       ///< index into Scene::nodes that carries it
+    float angleDeg = 0;                         ///< directional: full angular diameter; 0 is a delta
+    Vec2 size{1};                               ///< rectangle: full width and height, metres
+    float radius = 0.5f;                        ///< sphere, disk: metres
+    int node = -1;                              ///< index into Scene::nodes that carries it
 
     /// power (a factor on the emission) and what the type has: size, radius, angle-deg, cone angles, colour.
     void describe(ParameterVisitor&);

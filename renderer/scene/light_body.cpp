@@ -43,10 +43,12 @@ int bodyMaterial(Scene& scene) {
 bool wornOtherwise(const Scene& scene, uint32_t material) {
     for (const Instance& instance : scene.instances) {
         if (instance.light >= 0) continue;
-        if (instance.material >= 0 ? instance.material == static_cast<int>(material) : instance.mesh->material == material)
+        if (instance.material >= 0 ? instance.material == static_cast<int>(material)
+                                   : instance.mesh->material == material)
             return true;
         const std::vector<uint32_t>& ofTriangles = instance.mesh->triangleMaterial;
-        if (instance.material < 0 && std::find(ofTriangles.begin(), ofTriangles.end(), material) != ofTriangles.end()) return true;
+        if (instance.material < 0 && std::find(ofTriangles.begin(), ofTriangles.end(), material) != ofTriangles.end())
+            return true;
     }
     return false;
 }
@@ -71,15 +73,16 @@ void addLightBodies(Scene& scene) {
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         std::shared_ptr<const Mesh> body = lightBody(scene.lights[i]);
         if (!body) continue;
-        const auto shown = std::find_if(scene.instances.begin(), scene.instances.end(),
-                                        [&](const Instance& instance) { return instance.light == static_cast<int>(i); });
+        const auto shown = std::find_if(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
+            return instance.light == static_cast<int>(i);
+        });
         if (shown != scene.instances.end()) {
             if (!sameShape(*shown->mesh, *body)) shown->mesh = std::move(body);
             continue;
         }
         const int material = bodyMaterial(scene);
-        scene.instances.push_back({scene.lights[i].name, std::move(body), scene.lights[i].node, -1, material,
-                                   static_cast<int>(i)});
+        scene.instances.push_back(
+            {scene.lights[i].name, std::move(body), scene.lights[i].node, -1, material, static_cast<int>(i)});
     }
 }
 
@@ -88,7 +91,8 @@ std::vector<bool> bodyMaterials(const Scene& scene) {
     for (const Instance& instance : scene.instances)
         if (instance.light >= 0 && instance.material >= 0) bodies[static_cast<size_t>(instance.material)] = true;
     for (size_t i = 0; i < bodies.size(); ++i)
-        if (bodies[i]) bodies[i] = scene.materials[i].name == kBodyMaterial && !wornOtherwise(scene, static_cast<uint32_t>(i));
+        if (bodies[i])
+            bodies[i] = scene.materials[i].name == kBodyMaterial && !wornOtherwise(scene, static_cast<uint32_t>(i));
     return bodies;
 }
 

@@ -15,8 +15,8 @@ std::shared_ptr<const Mesh> lightBody(const Light& light);
 /// changed; the rest of the scene keeps its order.
 void addLightBodies(Scene& scene);
 
-/// For each material of the scene: is it the one that addLightBodies() made, worn by bodies alone? It says nothing of them:
-/// what a body shows is its light's.
+/// For each material of the scene: is it the one that addLightBodies() made, worn by bodies alone? It says nothing of
+/// them: what a body shows is its light's.
 std::vector<bool> bodyMaterials(const Scene& scene);
 
 }  // namespace lumi

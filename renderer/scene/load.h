@@ -26,17 +26,17 @@ struct Subdivision {
 };
 
 struct LoadOptions {
-    int sceneIndex = -1;     ///< glTF: which scene; -1 is the file's default
-    std::string variant;     ///< KHR_materials_variants, by name; empty is the default
-    Subdivision subdivision; ///< OBJ
+    int sceneIndex = -1;      ///< glTF: which scene; -1 is the file's default
+    std::string variant;      ///< KHR_materials_variants, by name; empty is the default
+    Subdivision subdivision;  ///< OBJ
     LoadProgress progress;
-    std::stop_token stop;    ///< a stopped load throws Error(Interrupted)
+    std::stop_token stop;  ///< a stopped load throws Error(Interrupted)
 };
 
 /// Loads .json (our own), .gltf, .glb, .obj; an .hdr or .exr gives a material ball under that sky. A scene without a
 /// camera gets `default`, one without light or emission the built-in sky and a warning (not for .json); see README.
-/// Warnings go to `log`. Throws Error(BadInput) with file and position, Error(Resources), or Error(Usage) for a scene or
-/// variant asked of a file that has none.
+/// Warnings go to `log`. Throws Error(BadInput) with file and position, Error(Resources), or Error(Usage) for a scene
+/// or variant asked of a file that has none.
 std::shared_ptr<const Scene> loadScene(const std::filesystem::path& path, MessageLog& log,
                                        const LoadOptions& options = {});
 

@@ -8,9 +8,9 @@ namespace lumi {
 
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
-/// A glTF 2.0 metallic-roughness material with the KHR extensions that this renderer shades.
-/// Factors multiply their texture. Colours are linear Rec.709. Of glTF's core only occlusionTexture is left out, and never
-/// decoded: light transport computes occlusion.
+/// A glTF 2.0 metallic-roughness material with the KHR extensions that this renderer shades. Factors multiply their
+/// texture. Colours are linear Rec.709. Of glTF's core only occlusionTexture is left out, and never decoded: light
+/// transport computes occlusion.
 struct Material {
     std::string name;
 
@@ -18,7 +18,7 @@ struct Material {
     float alpha = 1;
     Texture baseColorTexture;  ///< RGB colour (sRGB), A alpha
     float metallic = 0;
-    float roughness = 0.5f;  ///< the user's; ggxAlpha is its square
+    float roughness = 0.5f;            ///< the user's; ggxAlpha is its square
     Texture metallicRoughnessTexture;  ///< G roughness, B metallic
     Texture normalTexture;
     float normalScale = 1;
@@ -29,8 +29,8 @@ struct Material {
 
     AlphaMode alphaMode = AlphaMode::Opaque;
     float alphaCutoff = 0.5f;
-    /// If not, only the front faces emit, and the camera does not see the back faces of what does not transmit. All other
-    /// rays meet both, and shading is always two-sided.
+    /// If not, only the front faces emit, and the camera does not see the back faces of what does not transmit. All
+    /// other rays meet both, and shading is always two-sided.
     bool doubleSided = true;
 
     float ior = 1.5f;
@@ -39,33 +39,33 @@ struct Material {
     Texture specularTexture;       ///< A
     Texture specularColorTexture;  ///< RGB (sRGB)
 
-    float transmission = 0;  ///< KHR_materials_transmission: share of the diffuse base that transmits
+    float transmission = 0;       ///< KHR_materials_transmission: share of the diffuse base that transmits
     Texture transmissionTexture;  ///< R
-    float thickness = 0;  ///< KHR_materials_volume: 0 is a thin wall (no refraction), above 0 a closed solid
+    float thickness = 0;          ///< KHR_materials_volume: 0 is a thin wall (no refraction), above 0 a closed solid
     Vec3 attenuationColor{1};
     float attenuationDistance = kInfinity;  ///< metres in which light takes on attenuationColor
 
-    float clearcoat = 0;  ///< KHR_materials_clearcoat: share of the surface under a varnish of index 1.5
+    float clearcoat = 0;       ///< KHR_materials_clearcoat: share of the surface under a varnish of index 1.5
     Texture clearcoatTexture;  ///< R
     float clearcoatRoughness = 0;
     Texture clearcoatRoughnessTexture;  ///< G
     Texture clearcoatNormalTexture;     ///< without one the varnish follows the smooth normal, not normalTexture
     float clearcoatNormalScale = 1;
 
-    Vec3 sheenColor{0};  ///< KHR_materials_sheen: reflectance of fibres at grazing angles
+    Vec3 sheenColor{0};         ///< KHR_materials_sheen: reflectance of fibres at grazing angles
     Texture sheenColorTexture;  ///< RGB (sRGB)
     float sheenRoughness = 0;
     Texture sheenRoughnessTexture;  ///< A
 
-    float anisotropy = 0;  ///< KHR_materials_anisotropy: how far the highlight is stretched along its direction
+    float anisotropy = 0;          ///< KHR_materials_anisotropy: how far the highlight is stretched along its direction
     float anisotropyRotation = 0;  ///< radians, counter-clockwise from the tangent
-    Texture anisotropyTexture;  ///< RG direction in tangent space, -1 to 1; B multiplies anisotropy
+    Texture anisotropyTexture;     ///< RG direction in tangent space, -1 to 1; B multiplies anisotropy
 
-    float iridescence = 0;  ///< KHR_materials_iridescence: share of the surface under a thin film
+    float iridescence = 0;       ///< KHR_materials_iridescence: share of the surface under a thin film
     Texture iridescenceTexture;  ///< R
     float iridescenceIor = 1.3f;
     float iridescenceThicknessMin = 100, iridescenceThicknessMax = 400;  ///< nm; without a texture the latter counts
-    Texture iridescenceThicknessTexture;  ///< G goes from the least to the most
+    Texture iridescenceThicknessTexture;                                 ///< G goes from the least to the most
 
     bool emits() const { return !isBlack(emission); }
     bool isSolid() const { return thickness > 0; }

@@ -28,12 +28,14 @@ struct SkinWeights {
 struct Mesh {
     std::string name;
     std::vector<Vec3> positions;
-    std::vector<Vec3> normals;   ///< unit; empty: flat shading
-    std::vector<Vec4> tangents;  ///< xyz unit, w = +-1 handedness (glTF); empty: derived from uv when a normal map needs it
+    std::vector<Vec3> normals;  ///< unit; empty: flat shading
+    std::vector<Vec4>
+        tangents;  ///< xyz unit, w = +-1 handedness (glTF); empty: derived from uv when a normal map needs it
     std::vector<Vec2> uv[2];
-    std::vector<Vec4> colours;   ///< linear RGBA, multiplies base colour
+    std::vector<Vec4> colours;  ///< linear RGBA, multiplies base colour
     std::vector<UVec3> triangles;
-    std::vector<uint32_t> triangleMaterial;  ///< index into Scene::materials for each triangle; empty: `material` for all
+    std::vector<uint32_t>
+        triangleMaterial;  ///< index into Scene::materials for each triangle; empty: `material` for all
     uint32_t material = 0;
 
     std::vector<MorphTarget> morphTargets;

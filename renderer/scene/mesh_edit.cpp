@@ -30,10 +30,8 @@ template <class T>
 void append(std::vector<T>& to, size_t before, const std::vector<T>& from, size_t count, const T& fill) {
     if (to.empty() && from.empty()) return;
     to.resize(before, fill);
-    if (from.empty())
-        to.resize(before + count, fill);
-    else
-        to.insert(to.end(), from.begin(), from.end());
+    if (from.empty()) to.resize(before + count, fill);
+    else to.insert(to.end(), from.begin(), from.end());
 }
 
 void appendSkin(SkinWeights& to, size_t before, const SkinWeights& from, size_t count) {

@@ -25,13 +25,13 @@ bool continues(const PosedScene* earlier, const Scene& scene, const ShutterTimes
 /// What of the instance is otherwise at the other moments; it is made if need be, as it is at shutter open.
 PosedMotion& motionOf(PosedInstance& posed) {
     if (!posed.motion)
-        posed.motion = std::make_shared<PosedMotion>(
-            PosedMotion{false, posed.worldFromObject, posed.worldFromObject, posed.deformed, posed.deformed, nullptr, nullptr});
+        posed.motion = std::make_shared<PosedMotion>(PosedMotion{false, posed.worldFromObject, posed.worldFromObject,
+                                                                 posed.deformed, posed.deformed, nullptr, nullptr});
     return *posed.motion;
 }
 
-PosedInstance poseInstance(const Instance& instance, const PosedMoment& open, const PosedMoment& close, const PosedMoment& previous,
-                           const PosedInstance* earlier) {
+PosedInstance poseInstance(const Instance& instance, const PosedMoment& open, const PosedMoment& close,
+                           const PosedMoment& previous, const PosedInstance* earlier) {
     PosedInstance posed;
     posed.worldFromObject = placementOf(instance, open);
     const Mat4 atClose = placementOf(instance, close);
@@ -42,15 +42,13 @@ PosedInstance poseInstance(const Instance& instance, const PosedMoment& open, co
                              ? earlier->deformed
                              : deformAt(instance, open);
         deformedClose = deformsAlike(instance, open, close) ? posed.deformed : deformAt(instance, close);
-        if (earlier && earlier->deformed)
-            deformedPrevious = earlier->deformed;
-        else
-            deformedPrevious = deformsAlike(instance, open, previous) ? posed.deformed : deformAt(instance, previous);
+        if (earlier && earlier->deformed) deformedPrevious = earlier->deformed;
+        else deformedPrevious = deformsAlike(instance, open, previous) ? posed.deformed : deformAt(instance, previous);
     }
     if (posed.worldFromObject != atClose || posed.worldFromObject != before || posed.deformed != deformedClose ||
         posed.deformed != deformedPrevious)
-        posed.motion = std::make_shared<PosedMotion>(
-            PosedMotion{true, atClose, before, std::move(deformedClose), std::move(deformedPrevious), nullptr, nullptr});
+        posed.motion = std::make_shared<PosedMotion>(PosedMotion{true, atClose, before, std::move(deformedClose),
+                                                                 std::move(deformedPrevious), nullptr, nullptr});
     return posed;
 }
 
@@ -103,26 +101,34 @@ void keepPreviousTracks(const PosedScene& before, PosedScene& posed) {
 }
 
 /// Fills in what moves while the shutter is open, in this frame and in the one before.
-void openShutter(const ShutterTimes& times, bool cut, const PosedScene* before, PosedScene& posed, const std::stop_token& stop) {
+void openShutter(const ShutterTimes& times, bool cut, const PosedScene* before, PosedScene& posed,
+                 const std::stop_token& stop) {
     const Scene& scene = *posed.scene;
     const std::vector<Bounds3>& bounds = *posed.meshBounds;
     const std::vector<PosedMoment> moments = shutterMoments(scene, times.open, times.close, bounds, stop);
     std::vector<PosedMoment> earlier;
     if (!cut && !before)
-        earlier = shutterMoments(scene, times.previousOpen, times.previousOpen + times.close - times.open, bounds, stop);
-    parallelRanges(static_cast<int64_t>(posed.instances.size()), 16, [&](int64_t begin, int64_t end) {
-        for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
-            if (stop.stop_requested()) return;
-            PosedInstance& pose = posed.instances[i];
-            std::shared_ptr<const ShutterTrack> track = shutterTrack(scene.instances[i], moments, bounds[i], pose.deformed), previous;
-            if (!earlier.empty()) previous = shutterTrack(scene.instances[i], earlier, bounds[i], pose.deformedPrevious());
-            if (cut) previous = track;
-            if (!track && !previous) continue;
-            PosedMotion& motion = motionOf(pose);
-            motion.moves |= track != nullptr;
-            motion.track = std::move(track), motion.previousTrack = std::move(previous);
-        }
-    }, stop);
+        earlier =
+            shutterMoments(scene, times.previousOpen, times.previousOpen + times.close - times.open, bounds, stop);
+    parallelRanges(
+        static_cast<int64_t>(posed.instances.size()), 16,
+        [&](int64_t begin, int64_t end) {
+            for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+                if (stop.stop_requested()) return;
+                PosedInstance& pose = posed.instances[i];
+                std::shared_ptr<const ShutterTrack> track = shutterTrack(scene.instances[i], moments, bounds[i],
+                                                                         pose.deformed),
+                                                    previous;
+                if (!earlier.empty())
+                    previous = shutterTrack(scene.instances[i], earlier, bounds[i], pose.deformedPrevious());
+                if (cut) previous = track;
+                if (!track && !previous) continue;
+                PosedMotion& motion = motionOf(pose);
+                motion.moves |= track != nullptr;
+                motion.track = std::move(track), motion.previousTrack = std::move(previous);
+            }
+        },
+        stop);
     checkStop(stop);
     for (size_t i = 0; i < posed.lights.size(); ++i) {
         PosedLight& light = posed.lights[i];
@@ -172,14 +178,17 @@ std::shared_ptr<const PosedScene> poseScene(std::shared_ptr<const Scene> scene, 
     posed->instances.resize(scene->instances.size());
     std::vector<Bounds3> bounds(scene->instances.size());
     const PosedScene* before = cut ? nullptr : earlier;
-    parallelRanges(static_cast<int64_t>(bounds.size()), 16, [&](int64_t begin, int64_t end) {
-        for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
-            if (stop.stop_requested()) return;
-            posed->instances[i] =
-                poseInstance(scene->instances[i], open, close, previous, before ? &before->instances[i] : nullptr);
-            bounds[i] = worldBounds(posed->instances[i], (*posed->meshBounds)[i]);
-        }
-    }, stop);
+    parallelRanges(
+        static_cast<int64_t>(bounds.size()), 16,
+        [&](int64_t begin, int64_t end) {
+            for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+                if (stop.stop_requested()) return;
+                posed->instances[i] =
+                    poseInstance(scene->instances[i], open, close, previous, before ? &before->instances[i] : nullptr);
+                bounds[i] = worldBounds(posed->instances[i], (*posed->meshBounds)[i]);
+            }
+        },
+        stop);
     checkStop(stop);
     for (const Bounds3& b : bounds) posed->bounds.extend(b);
     for (const PosedInstance& instance : posed->instances)

@@ -12,8 +12,8 @@ struct DeformedVertices {
     std::vector<Vec3> positions, normals, tangents;  ///< tangents may be empty; their handedness is the mesh's
 };
 
-/// How an instance moves while the shutter is open: what it is at equally spaced moments from opening to closing, linear
-/// between them.
+/// How an instance moves while the shutter is open: what it is at equally spaced moments from opening to closing,
+/// linear between them.
 struct ShutterTrack {
     std::vector<Mat4> worldFromObject;  ///< one for each moment, or a single one if it stays in its place
     std::vector<std::shared_ptr<const DeformedVertices>> deformed;  ///< one for each moment; empty if its shape stays
@@ -54,8 +54,12 @@ struct PosedInstance {
     const Mat4& worldFromObjectClose() const { return motion ? motion->worldFromObjectClose : worldFromObject; }
     const Mat4& worldFromObjectPrevious() const { return motion ? motion->worldFromObjectPrevious : worldFromObject; }
     /// Equal to `deformed` (same pointer) where it has the same shape, the previous one on a cut too.
-    const std::shared_ptr<const DeformedVertices>& deformedClose() const { return motion ? motion->deformedClose : deformed; }
-    const std::shared_ptr<const DeformedVertices>& deformedPrevious() const { return motion ? motion->deformedPrevious : deformed; }
+    const std::shared_ptr<const DeformedVertices>& deformedClose() const {
+        return motion ? motion->deformedClose : deformed;
+    }
+    const std::shared_ptr<const DeformedVertices>& deformedPrevious() const {
+        return motion ? motion->deformedPrevious : deformed;
+    }
     const ShutterTrack* track() const { return motion ? motion->track.get() : nullptr; }
     const ShutterTrack* previousTrack() const { return motion ? motion->previousTrack.get() : nullptr; }
     Mat3 normalFromObject() const { return normalMatrix(worldFromObject); }
@@ -76,7 +80,7 @@ public:
     float closeTime = 0;               ///< seconds, shutter close
     std::vector<PosedInstance> instances;
     std::vector<PosedLight> lights;
-    Bounds3 bounds;  ///< at shutter open
+    Bounds3 bounds;              ///< at shutter open
     bool anythingMoves = false;  ///< against the previous frame
     /// Object-space bounds of each instance's mesh at rest; shared from frame to frame.
     std::shared_ptr<const std::vector<Bounds3>> meshBounds;

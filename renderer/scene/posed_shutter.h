@@ -25,8 +25,8 @@ std::span<const Mat4> jointsOf(const Instance& instance, const PosedMoment& mome
 bool deformsAlike(const Instance& instance, const PosedMoment& a, const PosedMoment& b);
 std::shared_ptr<const DeformedVertices> deformAt(const Instance& instance, const PosedMoment& moment);
 
-/// Moments from `open` to `close` seconds, a power of two and one more of them, so close to each other that between two of
-/// them everything goes straight, within a thousandth of its size; at most kMostShutterSegments and one more.
+/// Moments from `open` to `close` seconds, a power of two and one more of them, so close to each other that between two
+/// of them everything goes straight, within a thousandth of its size; at most kMostShutterSegments and one more.
 /// `meshBounds` as in PosedScene. Throws Error(Interrupted) once stopped.
 constexpr size_t kMostShutterSegments = 64;
 std::vector<PosedMoment> shutterMoments(const Scene& scene, float open, float close,

@@ -110,10 +110,12 @@ void requireReach(const PosedScene& posed, std::span<const Bounds3> bounds) {
     const std::string time = posed.time != 0 ? fmt::format(" at {:g} s", posed.time) : std::string();
     for (size_t i = 0; i < faults.size(); ++i)
         if (faults[i].found)
-            refuse(fmt::format("\"{}\" is too far or too large{}", scene.instances[i].name, time), faults[i], scene.path);
+            refuse(fmt::format("\"{}\" is too far or too large{}", scene.instances[i].name, time), faults[i],
+                   scene.path);
     for (size_t i = 0; i < posed.lights.size(); ++i)
         if (const Fault fault = faultOf(posed.lights[i]); fault.found)
-            refuse(fmt::format("the light \"{}\" is too far or too large{}", scene.lights[i].name, time), fault, scene.path);
+            refuse(fmt::format("the light \"{}\" is too far or too large{}", scene.lights[i].name, time), fault,
+                   scene.path);
 }
 
 void requireReach(const CameraPose& camera, const std::string& where) {

@@ -26,13 +26,13 @@ size_t firstOutOfReach(std::span<const Vec3> points);
 std::string reachText();
 std::string outOfReachText(const Vec3& p);
 
-/// Throws Error(BadInput) that names the scene's file and the first instance or light some part of which is not in reach
-/// at any moment of the frame: animation, skins, morphing and scales can carry there what lay in reach when it was loaded.
-/// `bounds` holds the world-space box of each instance at shutter open.
+/// Throws Error(BadInput) that names the scene's file and the first instance or light some part of which is not in
+/// reach at any moment of the frame: animation, skins, morphing and scales can carry there what lay in reach when it
+/// was loaded. `bounds` holds the world-space box of each instance at shutter open.
 void requireReach(const PosedScene& posed, std::span<const Bounds3> bounds);
 
-/// The same for a camera, which may be ten times as far: its place, and the part of the world that an orthographic one sees.
-/// `where` is the scene's file.
+/// The same for a camera, which may be ten times as far: its place, and the part of the world that an orthographic one
+/// sees. `where` is the scene's file.
 void requireReach(const CameraPose& camera, const std::string& where);
 
 }  // namespace lumi

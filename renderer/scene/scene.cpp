@@ -95,10 +95,8 @@ size_t Scene::byteCount() const {
 Camera cameraAt(const Scene& scene, int index, float time) {
     const SceneCamera& source = scene.cameras.at(static_cast<size_t>(index));
     Camera camera = source.camera;
-    if (source.node >= 0)
-        placeAtNode(camera, worldFromNodeAt(scene, source.node, time));
-    else if (!source.keys.empty())
-        placeByKeys(camera, source, time);
+    if (source.node >= 0) placeAtNode(camera, worldFromNodeAt(scene, source.node, time));
+    else if (!source.keys.empty()) placeByKeys(camera, source, time);
     return camera;
 }
 

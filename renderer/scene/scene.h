@@ -18,8 +18,8 @@ namespace lumi {
 struct Node {
     std::string name;
     int parent = -1;
-    Transform local;           ///< rest pose; animation replaces its parts
-    bool hasMatrix = false;    ///< glTF matrices that are no TRS (shear) are kept as they are
+    Transform local;         ///< rest pose; animation replaces its parts
+    bool hasMatrix = false;  ///< glTF matrices that are no TRS (shear) are kept as they are
     Mat4 matrix{1};
     std::vector<float> morphWeights;  ///< rest weights of the node's mesh
 };
@@ -35,9 +35,9 @@ struct Instance {
     std::string name;
     std::shared_ptr<const Mesh> mesh;
     int node = -1;
-    int skin = -1;                 ///< index into Scene::skins; skinned meshes ignore their node's transform (glTF)
-    int material = -1;             ///< replaces the mesh's own materials when >= 0
-    int light = -1;                ///< index into Scene::lights when this is the visible body of a light
+    int skin = -1;      ///< index into Scene::skins; skinned meshes ignore their node's transform (glTF)
+    int material = -1;  ///< replaces the mesh's own materials when >= 0
+    int light = -1;     ///< index into Scene::lights when this is the visible body of a light
 };
 
 /// A camera with what moves it: either a node of a glTF tree, or keys of its own (scene file).
@@ -66,9 +66,9 @@ struct RenderDefaults {
 /// object space, nodes in parents-first order, every light's and camera's node exists.
 struct Scene {
     std::string title;
-    std::string path;          ///< the file it came from; empty if built in memory
-    std::string contentDigest; ///< of every byte that was loaded: file, buffers, images
-    uint64_t version = 0;      ///< grows with each edit
+    std::string path;           ///< the file it came from; empty if built in memory
+    std::string contentDigest;  ///< of every byte that was loaded: file, buffers, images
+    uint64_t version = 0;       ///< grows with each edit
 
     std::vector<Node> nodes;
     std::vector<Material> materials;  ///< at least one

@@ -66,8 +66,7 @@ Scene parseSceneFile(const std::string& text, const std::string& file, const fs:
         scene.materials.back().name = "default";
     }
     scene.path = file;
-    scene.contentDigest =
-        digest({reinterpret_cast<const uint8_t*>(context.digests.data()), context.digests.size()});
+    scene.contentDigest = digest({reinterpret_cast<const uint8_t*>(context.digests.data()), context.digests.size()});
     return std::move(scene);
 }
 

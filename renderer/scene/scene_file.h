@@ -9,8 +9,9 @@ namespace lumi {
 constexpr uint64_t kMaxSceneFileBytes = uint64_t(256) << 20;
 
 /// Loads our own scene file (JSON; DESIGN and README, "Scene files"). Keys that nobody knows, values out of range and
-/// names that nothing defines are Error(BadInput) at file:line:column. Cameras may be absent; see addDefaults(). Its paths
-/// may lead out of its folder, which those inside glTF and OBJ files may not: who writes a scene file chooses what it reads.
+/// names that nothing defines are Error(BadInput) at file:line:column. Cameras may be absent; see addDefaults(). Its
+/// paths may lead out of its folder, which those inside glTF and OBJ files may not: who writes a scene file chooses
+/// what it reads.
 Scene loadSceneFile(const std::filesystem::path& path, MessageLog& log, const LoadOptions& options = {});
 
 /// The same from text: `file` heads messages, relative paths start at `folder`.

@@ -40,7 +40,8 @@ AssetSource readAsset(SceneFileContext& context, const JsonMember& member) {
         const JsonValue* value = reader.find(kind.c_str());
         if (!value) continue;
         if (!source.kind.empty())
-            reader.fail(value->at, fmt::format("asset \"{}\" is both \"{}\" and \"{}\"", member.key, source.kind, kind));
+            reader.fail(value->at,
+                        fmt::format("asset \"{}\" is both \"{}\" and \"{}\"", member.key, source.kind, kind));
         source.kind = kind;
         source.kindValue = value;
     }
@@ -98,14 +99,17 @@ std::set<std::string> usedAssets(const JsonValue* instances) {
 void buildGenerated(SceneFileContext& context, const std::vector<AssetSource*>& generated) {
     std::vector<std::optional<Error>> errors(generated.size());
     std::vector<Scene> scenes(generated.size());
-    parallelFor(static_cast<int64_t>(generated.size()), [&](int64_t index) {
-        const auto i = static_cast<size_t>(index);
-        try {
-            scenes[i] = sceneFromProcedural(generated[i]->generator->build());
-        } catch (const Error& error) {
-            errors[i] = error;
-        }
-    }, context.options.stop);
+    parallelFor(
+        static_cast<int64_t>(generated.size()),
+        [&](int64_t index) {
+            const auto i = static_cast<size_t>(index);
+            try {
+                scenes[i] = sceneFromProcedural(generated[i]->generator->build());
+            } catch (const Error& error) {
+                errors[i] = error;
+            }
+        },
+        context.options.stop);
     context.checkStop();
     for (size_t i = 0; i < generated.size(); ++i) {
         const AssetSource& source = *generated[i];
@@ -122,13 +126,20 @@ void buildGenerated(SceneFileContext& context, const std::vector<AssetSource*>& 
 }  // namespace
 
 void Subdivision::describe(ParameterVisitor& v) {
-    v.choice("subdivision", scheme, {.label = "Subdivision", .options = {"auto", "none", "catmull-clark"},
-                                     .help = "Whether the OBJ is a control cage of a smooth surface; auto: where it has "
-                                             "OpenSubdiv's tags (t or #t lines).",
-                                     .redo = Redo::Build});
+    v.choice("subdivision", scheme,
+             {.label = "Subdivision",
+              .options = {"auto", "none", "catmull-clark"},
+              .help = "Whether the OBJ is a control cage of a smooth surface; auto: where it has "
+                      "OpenSubdiv's tags (t or #t lines).",
+              .redo = Redo::Build});
     v.when(scheme != SubdivisionScheme::None, [&] {
-        v.integer("rate", rate, {.label = "Rate", .min = 1, .max = 64, .scale = Scale::Log,
-                                 .help = "Segments along every edge of the cage.", .redo = Redo::Build});
+        v.integer("rate", rate,
+                  {.label = "Rate",
+                   .min = 1,
+                   .max = 64,
+                   .scale = Scale::Log,
+                   .help = "Segments along every edge of the cage.",
+                   .redo = Redo::Build});
     });
 }
 

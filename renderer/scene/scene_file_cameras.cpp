@@ -18,7 +18,8 @@ void readCameraKeys(SceneFileContext& context, ObjectReader& reader, SceneCamera
     Camera moving = camera.camera;
     for (const JsonValue& item : list->items) {
         ObjectReader key(context.tree, item, "keys");
-        const float time = readKeyTime(key, camera.keys.empty() ? std::nullopt : std::optional(camera.keys.back().time));
+        const float time =
+            readKeyTime(key, camera.keys.empty() ? std::nullopt : std::optional(camera.keys.back().time));
         key.parameters([&](ParameterVisitor& v) { moving.describe(v); }, kKeyIds);
         key.finish();
         if (moving.eye == moving.target)
@@ -59,16 +60,31 @@ std::string settingText(SceneFileContext& context, const JsonMember& member) {
 }  // namespace
 
 void describeRender(RenderDefaults& render, ParameterVisitor& v) {
-    v.integer("width", render.size.width, {.label = "Width", .min = 1, .max = 16384, .unit = "px",
-                                           .help = "Width of the image.", .redo = Redo::Samples});
-    v.integer("height", render.size.height, {.label = "Height", .min = 1, .max = 16384, .unit = "px",
-                                             .help = "Height of the image.", .redo = Redo::Samples});
-    v.number("fps", render.fps, {.label = "Frames per second", .min = 0.1, .max = 1000,
-                                 .help = "The time of frame f is f / fps seconds.", .redo = Redo::Samples});
-    v.number("exposure", render.exposureEv, {.label = "Exposure", .min = -20, .max = 20, .unit = "EV",
-                                             .help = "Exposure of views and of metrics.", .redo = Redo::Display});
-    v.text("module", render.module, {.label = "Module", .help = "The module instance that makes the image.",
-                                     .redo = Redo::Filter});
+    v.integer(
+        "width", render.size.width,
+        {.label = "Width", .min = 1, .max = 16384, .unit = "px", .help = "Width of the image.", .redo = Redo::Samples});
+    v.integer("height", render.size.height,
+              {.label = "Height",
+               .min = 1,
+               .max = 16384,
+               .unit = "px",
+               .help = "Height of the image.",
+               .redo = Redo::Samples});
+    v.number("fps", render.fps,
+             {.label = "Frames per second",
+              .min = 0.1,
+              .max = 1000,
+              .help = "The time of frame f is f / fps seconds.",
+              .redo = Redo::Samples});
+    v.number("exposure", render.exposureEv,
+             {.label = "Exposure",
+              .min = -20,
+              .max = 20,
+              .unit = "EV",
+              .help = "Exposure of views and of metrics.",
+              .redo = Redo::Display});
+    v.text("module", render.module,
+           {.label = "Module", .help = "The module instance that makes the image.", .redo = Redo::Filter});
 }
 
 void readCameras(SceneFileContext& context, const JsonValue* section) {

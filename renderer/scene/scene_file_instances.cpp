@@ -39,8 +39,7 @@ std::vector<InstanceEntry> readNames(SceneFileContext& context, const JsonValue&
         if (!entry.parentValue) continue;
         const std::string parent = readText(context.tree, *entry.parentValue, "parent");
         const auto found = byName.find(parent);
-        if (found == byName.end())
-            refuseName(context.tree, entry.parentValue->at, "instance", parent, namesOf(byName));
+        if (found == byName.end()) refuseName(context.tree, entry.parentValue->at, "instance", parent, namesOf(byName));
         entry.parent = static_cast<int>(found->second);
     }
     return entries;
@@ -113,8 +112,7 @@ void readInstance(SceneFileContext& context, const InstanceEntry& entry, int nod
     }
     const std::string name = readText(context.tree, *assetName, "asset");
     const auto asset = context.assets.find(name);
-    if (asset == context.assets.end())
-        refuseName(context.tree, assetName->at, "asset", name, namesOf(context.assets));
+    if (asset == context.assets.end()) refuseName(context.tree, assetName->at, "asset", name, namesOf(context.assets));
     const SlotFilling filling = readSlots(context, reader, asset->second);
     reader.finish();
     placeAsset(context.scene, asset->second, entry.name, node, filling);
@@ -130,8 +128,7 @@ void readInstances(SceneFileContext& context, const JsonValue* section) {
         const InstanceEntry& entry = entries[index];
         Node node;
         node.name = entry.name;
-        if (entry.parent >= 0)
-            node.parent = context.instanceNodes.at(entries[static_cast<size_t>(entry.parent)].name);
+        if (entry.parent >= 0) node.parent = context.instanceNodes.at(entries[static_cast<size_t>(entry.parent)].name);
         context.instanceNodes[entry.name] = static_cast<int>(context.scene.nodes.size());
         context.scene.nodes.push_back(std::move(node));
     }

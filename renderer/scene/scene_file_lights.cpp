@@ -75,7 +75,8 @@ void readLight(SceneFileContext& context, const JsonMember& member) {
     if (!shape) {
         std::vector<std::string> kinds;
         for (const LightKind& kind : kLightKinds) kinds.emplace_back(kind.name);
-        reader.fail(member.value.at, fmt::format("light \"{}\" has no kind", member.key), "one of " + quotedList(kinds));
+        reader.fail(member.value.at, fmt::format("light \"{}\" has no kind", member.key),
+                    "one of " + quotedList(kinds));
     }
     context.scene.lights.push_back(std::move(light));
 }

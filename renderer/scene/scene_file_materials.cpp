@@ -32,25 +32,47 @@ const std::vector<TextureKey> kTextureKeys{
 };
 
 void TexturePlacement::describe(ParameterVisitor& v) {
-    v.number("scale-u", scale.x, {.label = "Scale u", .min = -1e4, .max = 1e4,
-                                  .help = "Repetitions along u for each unit of uv.", .redo = Redo::Samples});
-    v.number("scale-v", scale.y, {.label = "Scale v", .min = -1e4, .max = 1e4,
-                                  .help = "Repetitions along v for each unit of uv.", .redo = Redo::Samples});
-    v.number("offset-u", offset.x, {.label = "Offset u", .min = -1e4, .max = 1e4, .help = "Shift along u.",
-                                    .redo = Redo::Samples});
-    v.number("offset-v", offset.y, {.label = "Offset v", .min = -1e4, .max = 1e4, .help = "Shift along v.",
-                                    .redo = Redo::Samples});
-    v.number("rotate-deg", rotateDeg, {.label = "Rotation", .min = -360, .max = 360, .unit = "deg",
-                                       .help = "Counter-clockwise, as KHR_texture_transform defines it.",
-                                       .redo = Redo::Samples});
-    v.integer("uv-set", uvSet, {.label = "UV set", .min = 0, .max = 1, .help = "Which texture coordinates to use.",
-                                .redo = Redo::Samples});
-    v.choice("wrap", wrap, {.label = "Wrap", .options = {"repeat", "mirror", "clamp"},
-                            .help = "What lies outside of 0 to 1.", .redo = Redo::Samples});
-    v.choice("filter", filter, {.label = "Filter", .options = {"nearest", "linear"},
-                                .help = "How texels are interpolated.", .redo = Redo::Samples});
-    v.toggle("mipmaps", mipmaps, {.label = "Mip maps", .help = "Average texels that a pixel's footprint covers; without, every "
-                                  "lookup is at full resolution and fine detail aliases.", .redo = Redo::Samples});
+    v.number("scale-u", scale.x,
+             {.label = "Scale u",
+              .min = -1e4,
+              .max = 1e4,
+              .help = "Repetitions along u for each unit of uv.",
+              .redo = Redo::Samples});
+    v.number("scale-v", scale.y,
+             {.label = "Scale v",
+              .min = -1e4,
+              .max = 1e4,
+              .help = "Repetitions along v for each unit of uv.",
+              .redo = Redo::Samples});
+    v.number("offset-u", offset.x,
+             {.label = "Offset u", .min = -1e4, .max = 1e4, .help = "Shift along u.", .redo = Redo::Samples});
+    v.number("offset-v", offset.y,
+             {.label = "Offset v", .min = -1e4, .max = 1e4, .help = "Shift along v.", .redo = Redo::Samples});
+    v.number("rotate-deg", rotateDeg,
+             {.label = "Rotation",
+              .min = -360,
+              .max = 360,
+              .unit = "deg",
+              .help = "Counter-clockwise, as KHR_texture_transform defines it.",
+              .redo = Redo::Samples});
+    v.integer(
+        "uv-set", uvSet,
+        {.label = "UV set", .min = 0, .max = 1, .help = "Which texture coordinates to use.", .redo = Redo::Samples});
+    v.choice("wrap", wrap,
+             {.label = "Wrap",
+              .options = {"repeat", "mirror", "clamp"},
+              .help = "What lies outside of 0 to 1.",
+              .redo = Redo::Samples});
+    v.choice("filter", filter,
+             {.label = "Filter",
+              .options = {"nearest", "linear"},
+              .help = "How texels are interpolated.",
+              .redo = Redo::Samples});
+    v.toggle("mipmaps", mipmaps,
+             {.label = "Mip maps",
+              .help = "Average texels that a pixel's footprint covers; without, every "
+                      "lookup is at full resolution and fine detail aliases.",
+              .redo = Redo::Samples});
 }
 
 namespace {
@@ -59,16 +81,16 @@ using ImagePtr = std::shared_ptr<const TextureImage>;
 
 /// A texture that some material asked for. Images are decoded together, in parallel, once all materials are read.
 struct TextureRequest {
-    const JsonValue* value;           ///< for messages
-    std::string file;                 ///< as written, or empty
+    const JsonValue* value;  ///< for messages
+    std::string file;        ///< as written, or empty
     std::unique_ptr<ProceduralTexture> generator;
-    std::string generated;            ///< the generator's name and all its parameters
+    std::string generated;  ///< the generator's name and all its parameters
     bool srgb;
-    int material;                     ///< index into scene.materials
+    int material;  ///< index into scene.materials
     const TextureKey* key;
     bool mipmaps = true;
-    Texture placement;                ///< the image comes with loadTextures()
-    size_t image = 0;                 ///< index into the distinct images
+    Texture placement;  ///< the image comes with loadTextures()
+    size_t image = 0;   ///< index into the distinct images
 };
 
 Texture placedTexture(const TexturePlacement& placement) {
@@ -136,7 +158,8 @@ void loadTextures(SceneFileContext& context, std::vector<TextureRequest>& reques
     std::vector<const TextureRequest*> distinct;
     for (TextureRequest& request : requests) {
         const bool srgb = request.generator ? false : request.srgb;
-        const auto [place, isNew] = known.emplace(std::tuple(request.file, request.generated, srgb, request.mipmaps), distinct.size());
+        const auto [place, isNew] =
+            known.emplace(std::tuple(request.file, request.generated, srgb, request.mipmaps), distinct.size());
         request.image = place->second;
         if (isNew) distinct.push_back(&request);
     }
@@ -174,7 +197,8 @@ void loadTextures(SceneFileContext& context, std::vector<TextureRequest>& reques
 
 }  // namespace
 
-const TextureKey kRadianceTexture{"radiance-texture", true, nullptr, "Multiplies radiance; upright seen from the front."};
+const TextureKey kRadianceTexture{"radiance-texture", true, nullptr,
+                                  "Multiplies radiance; upright seen from the front."};
 
 Texture readTexture(SceneFileContext& context, const JsonValue& value, const TextureKey& key) {
     std::vector<TextureRequest> requests;

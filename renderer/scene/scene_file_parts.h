@@ -28,7 +28,9 @@ struct SceneFileContext {
     std::string digests;                        ///< of every file that was read, in order
 
     /// `name` relative to the scene file's folder, or an asset (scene/asset_folder.h). Throws what findAsset() throws.
-    std::filesystem::path resolve(const std::string& name) const { return isAssetName(name) ? findAsset(name) : folder / name; }
+    std::filesystem::path resolve(const std::string& name) const {
+        return isAssetName(name) ? findAsset(name) : folder / name;
+    }
     void report(float fraction, const std::string& step) const {
         if (options.progress) options.progress(fraction, step);
     }
@@ -84,8 +86,8 @@ struct TexturePlacement {
 
 /// "translate", "rotate-deg", "scale", "look-at", "direction" and "keys" of an object that asks for them.
 struct PlacementKeys {
-    bool scale = true;    ///< instances
-    bool look = false;    ///< lights: look-at and direction
+    bool scale = true;  ///< instances
+    bool look = false;  ///< lights: look-at and direction
 };
 
 /// Reads a placement into `node` and, if it has keys, adds an animation to the scene. The node is `nodeIndex`.

@@ -16,9 +16,8 @@ struct PlacementKey {
 };
 
 Vec3 readScale(ObjectReader& reader, const JsonValue& value) {
-    const Vec3 scale = value.isNumber()
-                           ? Vec3(static_cast<float>(readNumber(reader.tree(), value, "scale", -1e6, 1e6)))
-                           : readVector(reader.tree(), value, "scale");
+    const Vec3 scale = value.isNumber() ? Vec3(static_cast<float>(readNumber(reader.tree(), value, "scale", -1e6, 1e6)))
+                                        : readVector(reader.tree(), value, "scale");
     if (scale.x == 0 || scale.y == 0 || scale.z == 0) refuseValue(reader.tree(), value, "scale", "no zero");
     return scale;
 }
@@ -78,7 +77,8 @@ private:
 /// cut into quarters: they go the way the numbers say, as often as they say.
 void addTurn(ChannelBuilder& channel, float fromTime, float toTime, const Vec3& from, const Vec3& to, bool stepped) {
     const Vec3 turn = glm::abs(to - from);
-    const int pieces = stepped || maxComponent(turn) < 179.5f ? 1 : static_cast<int>(std::ceil(maxComponent(turn) / 90));
+    const int pieces =
+        stepped || maxComponent(turn) < 179.5f ? 1 : static_cast<int>(std::ceil(maxComponent(turn) / 90));
     for (int i = 1; i <= pieces; ++i) {
         const float t = static_cast<float>(i) / static_cast<float>(pieces);
         channel.add(i == pieces ? toTime : glm::mix(fromTime, toTime, t), rotationFromDegrees(glm::mix(from, to, t)));

@@ -15,11 +15,16 @@ using Json = nlohmann::ordered_json;
 
 Json text(const char* help) { return {{"type", "string"}, {"description", help}}; }
 Json numbers(int count, const char* help) {
-    return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", count}, {"maxItems", count},
+    return {{"type", "array"},
+            {"items", {{"type", "number"}}},
+            {"minItems", count},
+            {"maxItems", count},
             {"description", help}};
 }
 Json closed(Json properties, const char* help) {
-    return {{"type", "object"}, {"description", help}, {"properties", std::move(properties)},
+    return {{"type", "object"},
+            {"description", help},
+            {"properties", std::move(properties)},
             {"additionalProperties", false}};
 }
 Json mapOf(Json entry, const char* help) {
@@ -38,8 +43,14 @@ Json parameterSchema(const ParameterInfo& info) {
     if (!info.unit.empty()) help += " Unit: " + info.unit + ".";
     schema["description"] = help;
     switch (info.type) {
-        case ParameterType::Number: schema["type"] = "number"; setLimits(schema, info); break;
-        case ParameterType::Integer: schema["type"] = "integer"; setLimits(schema, info); break;
+        case ParameterType::Number:
+            schema["type"] = "number";
+            setLimits(schema, info);
+            break;
+        case ParameterType::Integer:
+            schema["type"] = "integer";
+            setLimits(schema, info);
+            break;
         case ParameterType::Toggle: schema["type"] = "boolean"; break;
         case ParameterType::Choice: schema["enum"] = info.options; break;
         case ParameterType::Text: schema["type"] = "string"; break;
@@ -99,10 +110,11 @@ void addKeys(Json& all, Json key, const char* help) {
 
 Json assetSchema() {
     Json kinds = Json::array();
-    kinds.push_back(closed({{"gltf", text("A .gltf or .glb file, relative to this file, or assets: and a path under $LUMISCOPE_ASSETS.")},
-                            {"scene", {{"type", "integer"}, {"minimum", 0}, {"description", "Which of its scenes."}}},
-                            {"variant", text("Which of its material variants.")}},
-                           "A glTF 2.0 asset."));
+    kinds.push_back(closed(
+        {{"gltf", text("A .gltf or .glb file, relative to this file, or assets: and a path under $LUMISCOPE_ASSETS.")},
+         {"scene", {{"type", "integer"}, {"minimum", 0}, {"description", "Which of its scenes."}}},
+         {"variant", text("Which of its material variants.")}},
+        "A glTF 2.0 asset."));
     Subdivision subdivision;
     Json obj = {{"obj", text("An .obj file, relative to this file, or assets: and a path under $LUMISCOPE_ASSETS.")}};
     obj.update(properties([&](ParameterVisitor& v) { subdivision.describe(v); }));
@@ -120,7 +132,9 @@ Json assetSchema() {
 
 Json textureSchema() {
     TexturePlacement placement;
-    Json all = {{"file", text("A PNG, JPEG, BMP or TGA file, relative to this file, or assets: and a path under $LUMISCOPE_ASSETS.")}};
+    Json all = {
+        {"file",
+         text("A PNG, JPEG, BMP or TGA file, relative to this file, or assets: and a path under $LUMISCOPE_ASSETS.")}};
     for (const ProceduralTextureEntry& entry : proceduralTextureCatalog()) {
         const auto generator = entry.make();
         all[entry.name] = closed(properties([&](ParameterVisitor& v) { generator->describe(v); }), entry.help);
@@ -172,7 +186,8 @@ Json lightSchema() {
         }
         all["parent"] = text("An instance, whose motion the light follows.");
         all.update(placement(false, true));
-        all["loop"] = {{"type", "boolean"}, {"default", true}, {"description", "Motion starts again after the last key."}};
+        all["loop"] = {
+            {"type", "boolean"}, {"default", true}, {"description", "Motion starts again after the last key."}};
         addKeys(all, placement(false, true), "Motion.");
         Json schema = closed(std::move(all), "A light; it shines along its -Z axis.");
         schema["required"] = {kind.name};
@@ -184,7 +199,8 @@ Json lightSchema() {
 Json environmentSchema() {
     Environment environment;
     Sky sky;
-    Json all = {{"file", text("An equirectangular .hdr or .exr, relative to this file, or assets: and a path under $LUMISCOPE_ASSETS; its centre is -Z.")}};
+    Json all = {{"file", text("An equirectangular .hdr or .exr, relative to this file, or assets: and a path under "
+                              "$LUMISCOPE_ASSETS; its centre is -Z.")}};
     all["sky"] = closed(properties([&](ParameterVisitor& v) { sky.describe(v); }), "A built-in daylight sky.");
     all.update(properties([&](ParameterVisitor& v) { environment.describe(v); }));
     return closed(std::move(all), "Light from infinitely far.");

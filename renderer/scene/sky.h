@@ -4,8 +4,8 @@
 
 namespace lumi {
 
-/// A smooth daylight sky: a gradient from horizon to zenith, dim ground, and a soft sun that a path tracer finds easily.
-/// Its looks are chosen, not measured.
+/// A smooth daylight sky: a gradient from horizon to zenith, dim ground, and a soft sun that a path tracer finds
+/// easily. Its looks are chosen, not measured.
 struct Sky {
     float radiance = 1;          ///< mean luminance over the whole sphere
     float sunElevationDeg = 40;  ///< above the horizon

@@ -182,11 +182,14 @@ SubdivisionSurface tessellateFaces(const SubdivisionCage& cage, const Far::Topol
 
     std::vector<std::vector<float>> rows(spans.size());
     const FaceTessellator tessellator(cage, factory, rate);
-    parallelRanges(faceCount, 32, [&](int64_t begin, int64_t end) {
-        for (int64_t face = begin; face < end; ++face)
-            if (spans[static_cast<size_t>(face)].vertexCount > 0)
-                tessellator.run(static_cast<int>(face), spans[static_cast<size_t>(face)], rows, out);
-    }, stop);
+    parallelRanges(
+        faceCount, 32,
+        [&](int64_t begin, int64_t end) {
+            for (int64_t face = begin; face < end; ++face)
+                if (spans[static_cast<size_t>(face)].vertexCount > 0)
+                    tessellator.run(static_cast<int>(face), spans[static_cast<size_t>(face)], rows, out);
+        },
+        stop);
     if (stop.stop_requested()) throw Error(ErrorKind::Interrupted, {"loading was stopped", where, "", ""});
     gatherRows(spans, rows, out);
     findShared(refiner.GetLevel(0), factory, rate, spans, out);

@@ -23,11 +23,11 @@ struct SubdivisionCage {
 
     std::string name;
     std::vector<Vec3> positions;
-    std::vector<uint32_t> faceSizes;     ///< corners of each face, 3 or more
-    std::vector<uint32_t> faceVertices;  ///< of all faces, one after the other, counter-clockwise
-    std::vector<Vec2> uvs;               ///< face-varying; empty: none
-    std::vector<uint32_t> faceUvs;       ///< as faceVertices, into uvs
-    std::vector<uint32_t> faceMaterials; ///< one a face; empty: `material`
+    std::vector<uint32_t> faceSizes;      ///< corners of each face, 3 or more
+    std::vector<uint32_t> faceVertices;   ///< of all faces, one after the other, counter-clockwise
+    std::vector<Vec2> uvs;                ///< face-varying; empty: none
+    std::vector<uint32_t> faceUvs;        ///< as faceVertices, into uvs
+    std::vector<uint32_t> faceMaterials;  ///< one a face; empty: `material`
     uint32_t material = 0;
     std::vector<Crease> creases;
     std::vector<Corner> corners;
@@ -41,9 +41,9 @@ struct SubdivisionCage {
 /// A cage's limit surface as triangles whose topology never changes, whatever the cage does. Every base face has
 /// vertices of its own; those on shared edges have equal positions, bit for bit, so the surface has no cracks.
 struct SubdivisionSurface {
-    Mesh mesh;                          ///< limit positions, limit normals, uv[0] if the cage has any
-    std::vector<uint32_t> triangleFace; ///< base face of each triangle
-    std::vector<Vec2> faceCoordinates;  ///< of each vertex, in OpenSubdiv's parameterisation of its base face
+    Mesh mesh;                           ///< limit positions, limit normals, uv[0] if the cage has any
+    std::vector<uint32_t> triangleFace;  ///< base face of each triangle
+    std::vector<Vec2> faceCoordinates;   ///< of each vertex, in OpenSubdiv's parameterisation of its base face
 
     /// Rows of weights over cage vertices: position, and the two tangents whose cross product is the normal.
     /// Row v is [first[v], first[v + 1]).
@@ -59,8 +59,9 @@ struct SubdivisionSurface {
 /// Tessellates the limit surface [OpenSubdiv 3.5, Bfr] with `rate` segments along every edge of the cage, on all
 /// threads; where OpenSubdiv needs the cage refined first (subdivision_folds.h), the rate goes up to an even number, or
 /// to a multiple of four. Throws Error(BadInput) headed by `where`: indices out of range, fewer than three corners,
-/// topology that cannot be refined, `rate` outside 1 to 64; Error(Resources) beyond the memory limit; Error(Interrupted) once
-/// stopped, which is looked at between faces.
-SubdivisionSurface tessellate(const SubdivisionCage& cage, int rate, const std::string& where, std::stop_token stop = {});
+/// topology that cannot be refined, `rate` outside 1 to 64; Error(Resources) beyond the memory limit;
+/// Error(Interrupted) once stopped, which is looked at between faces.
+SubdivisionSurface tessellate(const SubdivisionCage& cage, int rate, const std::string& where,
+                              std::stop_token stop = {});
 
 }  // namespace lumi

@@ -37,14 +37,15 @@ void checkCage(const SubdivisionCage& cage, const std::string& where) {
     for (const auto& crease : cage.creases) checkIndices({crease.a, crease.b}, cage.positions.size(), "crease", where);
     for (const auto& corner : cage.corners) checkIndices({corner.vertex}, cage.positions.size(), "corner", where);
     if (const size_t i = firstOutOfReach(cage.positions); i < cage.positions.size())
-        throwBadInput({fmt::format("the position of vertex {} is out of range", i), where, reachText(), outOfReachText(cage.positions[i])});
+        throwBadInput({fmt::format("the position of vertex {} is out of range", i), where, reachText(),
+                       outOfReachText(cage.positions[i])});
 }
 
 Sdc::Options schemeOptions(const SubdivisionCage& cage) {
     Sdc::Options options;
-    constexpr Sdc::Options::VtxBoundaryInterpolation kBoundary[] = {
-        Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
-        Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER};
+    constexpr Sdc::Options::VtxBoundaryInterpolation kBoundary[] = {Sdc::Options::VTX_BOUNDARY_NONE,
+                                                                    Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
+                                                                    Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER};
     constexpr Sdc::Options::FVarLinearInterpolation kFaceVarying[] = {
         Sdc::Options::FVAR_LINEAR_NONE,          Sdc::Options::FVAR_LINEAR_CORNERS_ONLY,
         Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,
@@ -52,8 +53,7 @@ Sdc::Options schemeOptions(const SubdivisionCage& cage) {
     options.SetVtxBoundaryInterpolation(kBoundary[static_cast<size_t>(cage.boundary)]);
     options.SetFVarLinearInterpolation(kFaceVarying[static_cast<size_t>(cage.faceVarying)]);
     options.SetCreasingMethod(cage.chaikin ? Sdc::Options::CREASE_CHAIKIN : Sdc::Options::CREASE_UNIFORM);
-    options.SetTriangleSubdivision(cage.smoothTriangles ? Sdc::Options::TRI_SUB_SMOOTH
-                                                        : Sdc::Options::TRI_SUB_CATMARK);
+    options.SetTriangleSubdivision(cage.smoothTriangles ? Sdc::Options::TRI_SUB_SMOOTH : Sdc::Options::TRI_SUB_CATMARK);
     return options;
 }
 

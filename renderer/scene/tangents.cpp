@@ -39,9 +39,7 @@ struct Group {
     uint32_t first = 0, last = 0;
 };
 
-Vec3 projected(const Vec3& v, const Vec3& normal) {
-    return unitOr(v - normal * glm::dot(normal, v), Vec3(0));
-}
+Vec3 projected(const Vec3& v, const Vec3& normal) { return unitOr(v - normal * glm::dot(normal, v), Vec3(0)); }
 
 Vec3 anyPerpendicular(const Vec3& n) {
     const Vec3 axis = std::abs(n.x) < 0.6f ? Vec3(1, 0, 0) : Vec3(0, 1, 0);

@@ -93,8 +93,8 @@ void halveRowSrgb(const uint8_t* top, const uint8_t* bottom, size_t step, int co
     const uint8_t* code = srgbTables().codeFromLinear.data();
     for (int x = 0; x < count; ++x, top += 8, bottom += 8, out += 4) {
         for (int c = 0; c < 3; ++c) {
-            const uint32_t sum = uint32_t(linear[top[c]]) + linear[top[step + c]] + linear[bottom[c]] +
-                                 linear[bottom[step + c]];
+            const uint32_t sum =
+                uint32_t(linear[top[c]]) + linear[top[step + c]] + linear[bottom[c]] + linear[bottom[step + c]];
             out[c] = code[sum >> 4];
         }
         out[3] = static_cast<uint8_t>((uint32_t(top[3]) + top[step + 3] + bottom[3] + bottom[step + 3] + 2) >> 2);
@@ -118,20 +118,15 @@ TextureImage::Level halvedLevel(const TextureImage::Level& from, bool srgb) {
     const size_t rowFrom = 4 * static_cast<size_t>(from.extent.width), rowTo = 4 * static_cast<size_t>(to.extent.width);
     const size_t step = from.extent.width > 1 ? 4 : 0;
     const bool isFloat = !from.floats.empty();
-    if (isFloat)
-        to.floats.resize(rowTo * static_cast<size_t>(to.extent.height));
-    else
-        to.bytes.resize(rowTo * static_cast<size_t>(to.extent.height));
+    if (isFloat) to.floats.resize(rowTo * static_cast<size_t>(to.extent.height));
+    else to.bytes.resize(rowTo * static_cast<size_t>(to.extent.height));
     for (int y = 0; y < to.extent.height; ++y) {
         const size_t top = rowFrom * static_cast<size_t>(2 * y);
         const size_t bottom = from.extent.height > 1 ? top + rowFrom : top;
         const size_t out = rowTo * static_cast<size_t>(y);
-        if (isFloat)
-            halveRowFloat(&from.floats[top], &from.floats[bottom], step, to.extent.width, &to.floats[out]);
-        else if (srgb)
-            halveRowSrgb(&from.bytes[top], &from.bytes[bottom], step, to.extent.width, &to.bytes[out]);
-        else
-            halveRowLinear(&from.bytes[top], &from.bytes[bottom], step, to.extent.width, &to.bytes[out]);
+        if (isFloat) halveRowFloat(&from.floats[top], &from.floats[bottom], step, to.extent.width, &to.floats[out]);
+        else if (srgb) halveRowSrgb(&from.bytes[top], &from.bytes[bottom], step, to.extent.width, &to.bytes[out]);
+        else halveRowLinear(&from.bytes[top], &from.bytes[bottom], step, to.extent.width, &to.bytes[out]);
     }
     return to;
 }
@@ -197,8 +192,8 @@ float Texture::sampleAlpha(Vec2 uv) const {
     const TextureImage::Level& level = image->levels.front();
     uv = transformed(uv);
     const auto alpha = [&](int x, int y) {
-        const size_t place = 4 * (static_cast<size_t>(y) * static_cast<size_t>(level.extent.width) +
-                                  static_cast<size_t>(x)) + 3;
+        const size_t place =
+            4 * (static_cast<size_t>(y) * static_cast<size_t>(level.extent.width) + static_cast<size_t>(x)) + 3;
         return level.floats.empty() ? static_cast<float>(level.bytes[place]) * (1.0f / 255) : level.floats[place];
     };
     if (!finite(uv)) return alpha(0, 0);

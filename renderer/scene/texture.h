@@ -20,7 +20,7 @@ struct TextureImage {
         std::vector<uint8_t> bytes;  ///< RGBA8, empty for float images
         std::vector<float> floats;   ///< RGBA32F, empty for 8-bit images
     };
-    std::string name;  ///< file name or "image 3", for messages
+    std::string name;   ///< file name or "image 3", for messages
     bool srgb = false;  ///< RGB is sRGB-encoded; alpha never is
     std::vector<Level> levels;
 

@@ -41,7 +41,9 @@ struct AxisTap {
     const int whole = static_cast<int>(floored);
     AxisTap tap{whole, whole + 1, x - floored};
     if (wrap == Wrap::Repeat) {
-        const auto outside = [count](int texel) { return static_cast<unsigned>(texel) >= static_cast<unsigned>(count); };
+        const auto outside = [count](int texel) {
+            return static_cast<unsigned>(texel) >= static_cast<unsigned>(count);
+        };
         if (outside(tap.first)) tap.first = count - 1;
         if (outside(tap.second)) tap.second = 0;
     } else {

@@ -11,7 +11,8 @@ struct Clock {
     float fps = 60;         ///< and the frames a second from there on
 
     float at(FrameNumber number) const {
-        return static_cast<float>(static_cast<double>(time) + static_cast<double>(number - frame) / static_cast<double>(fps));
+        return static_cast<float>(static_cast<double>(time) +
+                                  static_cast<double>(number - frame) / static_cast<double>(fps));
     }
     bool operator==(const Clock&) const = default;
 };

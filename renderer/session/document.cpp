@@ -52,8 +52,9 @@ std::vector<std::string> cameraNames(const Scene& scene) {
 }
 
 bool sameValues(const std::vector<ParameterInfo>& a, const std::vector<ParameterInfo>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const ParameterInfo& x, const ParameterInfo& y) { return x.id == y.id && x.value == y.value; });
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const ParameterInfo& x, const ParameterInfo& y) {
+        return x.id == y.id && x.value == y.value;
+    });
 }
 
 [[noreturn]] void throwUnknownId(const Document& document, const std::string& id, const std::string& where) {
@@ -97,30 +98,56 @@ std::vector<std::string> slugs(const std::vector<std::string>& names, const std:
 }
 
 void ViewSettings::describe(ParameterVisitor& v) {
-    v.text("module", module, {.label = "Method", .help = "Module instance that the view shows, as svgf or svgf@b",
-                              .redo = Redo::Filter});
-    v.text("buffer", buffer, {.label = "Buffer", .help = "`image`, a signal or one of the module's taps",
-                              .redo = Redo::Filter});
+    v.text("module", module,
+           {.label = "Method", .help = "Module instance that the view shows, as svgf or svgf@b", .redo = Redo::Filter});
+    v.text("buffer", buffer,
+           {.label = "Buffer", .help = "`image`, a signal or one of the module's taps", .redo = Redo::Filter});
     display.describe(v);
 }
 
 void RenderSettings::describe(ParameterVisitor& v) {
-    v.integer("width", width, {.label = "Width", .min = 1, .max = 16384, .unit = "px", .help = "Width of the rendered image",
-                               .redo = Redo::Samples});
-    v.integer("height", height, {.label = "Height", .min = 1, .max = 16384, .unit = "px",
-                                 .help = "Height of the rendered image", .redo = Redo::Samples});
-    v.integer("spp", samplesPerPixel, {.label = "Samples a frame", .min = 1, .max = 65536, .scale = Scale::Log, .unit = "spp",
-                                       .help = "Samples a pixel in each frame", .redo = Redo::Samples});
-    v.integer("seed", seed, {.label = "Seed", .min = 0, .max = 1e9, .help = "Selects another set of random numbers",
-                             .redo = Redo::Samples});
-    v.number("fps", fps, {.label = "Frames a second", .min = 0.1, .max = 1000, .scale = Scale::Log, .unit = "Hz",
-                          .help = "Time goes on by the inverse of this with each frame while it plays; so the shutter's time "
-                                  "depends on it",
-                          .redo = Redo::Samples});
+    v.integer("width", width,
+              {.label = "Width",
+               .min = 1,
+               .max = 16384,
+               .unit = "px",
+               .help = "Width of the rendered image",
+               .redo = Redo::Samples});
+    v.integer("height", height,
+              {.label = "Height",
+               .min = 1,
+               .max = 16384,
+               .unit = "px",
+               .help = "Height of the rendered image",
+               .redo = Redo::Samples});
+    v.integer("spp", samplesPerPixel,
+              {.label = "Samples a frame",
+               .min = 1,
+               .max = 65536,
+               .scale = Scale::Log,
+               .unit = "spp",
+               .help = "Samples a pixel in each frame",
+               .redo = Redo::Samples});
+    v.integer("seed", seed,
+              {.label = "Seed",
+               .min = 0,
+               .max = 1e9,
+               .help = "Selects another set of random numbers",
+               .redo = Redo::Samples});
+    v.number("fps", fps,
+             {.label = "Frames a second",
+              .min = 0.1,
+              .max = 1000,
+              .scale = Scale::Log,
+              .unit = "Hz",
+              .help = "Time goes on by the inverse of this with each frame while it plays; so the shutter's time "
+                      "depends on it",
+              .redo = Redo::Samples});
 }
 
 Document::Document(std::shared_ptr<const Scene> scene) : loaded_(scene), edited_(std::move(scene)) {
-    names_ = std::make_shared<Names>(Names{materialNames(*loaded_), namesOf(loaded_->lights, "light"), cameraNames(*loaded_)});
+    names_ = std::make_shared<Names>(
+        Names{materialNames(*loaded_), namesOf(loaded_->lights, "light"), cameraNames(*loaded_)});
     // At rest things may lie where no frame has them.
     const float radius = loaded_->restBounds().radius();
     sceneRadius_ = isInReach(radius) ? radius : kReach;
@@ -130,7 +157,8 @@ Document::Document(std::shared_ptr<const Scene> scene) : loaded_(scene), edited_
     render_.fps = defaults.fps;
     for (ViewSettings& view : views_) view.display.exposureEv = defaults.exposureEv;
     views_[0].module = defaults.module;
-    views_[1].module = defaults.module == "none" ? "accumulate" : "none";  // what the first view made of the same samples
+    // what the first view made of the same samples
+    views_[1].module = defaults.module == "none" ? "accumulate" : "none";
     try {
         findModule(defaults.module, loaded_->path + ": render.module");
         for (const auto& [id, text] : defaults.set) setText(id, text, loaded_->path + ": render.set");
@@ -153,8 +181,8 @@ CameraTrack Document::cameraTrack() const {
     CameraTrack track;
     if (!(open > 0) || !cameraMoves()) return track;
     for (int i = 0; i <= kSegments; ++i)
-        track.push_back(poseCamera(cameraAt(time_ + open * static_cast<float>(i) / kSegments),
-                                   {render_.width, render_.height}));
+        track.push_back(
+            poseCamera(cameraAt(time_ + open * static_cast<float>(i) / kSegments), {render_.width, render_.height}));
     const bool still = std::all_of(track.begin(), track.end(), [&](const CameraPose& p) { return p == track[0]; });
     return still ? CameraTrack() : track;
 }
@@ -259,7 +287,8 @@ json Document::difference(const Document& from, const Document& to) {
     if (again) changes["camera.select"] = to.names_->cameras[static_cast<size_t>(to.camera_)];
     for (const auto& [name, value] : to.cameraEdits_) {
         const auto same = from.cameraEdits_.find(name);
-        if (again || same == from.cameraEdits_.end() || same->second != value) changes["camera." + name] = toJson(value);
+        if (again || same == from.cameraEdits_.end() || same->second != value)
+            changes["camera." + name] = toJson(value);
     }
     if (from.jitter_ != to.jitter_) changes["camera.jitter"] = toJson(to.get("camera.jitter"));
 
@@ -311,7 +340,8 @@ void Document::apply(const json& values, const std::string& where) {
     const auto digest = values.find(kEnvironmentDigest);
     if (digest != values.end() && *digest != environmentDigest_)
         throwBadInput({"the sky changed since the image was made", edited_->environment.file,
-                       "content " + (digest->is_string() ? digest->get<std::string>() : digest->dump()), environmentDigest_});
+                       "content " + (digest->is_string() ? digest->get<std::string>() : digest->dump()),
+                       environmentDigest_});
 }
 
 }  // namespace lumi

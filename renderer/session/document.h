@@ -17,7 +17,7 @@ namespace lumi {
 /// What one view shows: `view.<n>.*`. Views 0 and 1 exist always; `view.layout` says how many are drawn.
 struct ViewSettings {
     std::string module = "accumulate";  ///< instance name
-    std::string buffer = "image";       ///< "image" (the module's result), a signal's name, or a tap's name of the module
+    std::string buffer = "image";  ///< "image" (the module's result), a signal's name, or a tap's name of the module
     DisplaySettings display;
     void describe(ParameterVisitor&);
 };
@@ -31,7 +31,7 @@ struct RenderSettings {
     int width = 1280, height = 720;  ///< of the rendered image, independent of the window
     int samplesPerPixel = 1;         ///< per frame; id `spp`
     int seed = 0;
-    float fps = 60;                  ///< time advances by 1/fps a frame while it plays
+    float fps = 60;  ///< time advances by 1/fps a frame while it plays
     void describe(ParameterVisitor&);
 };
 
@@ -47,7 +47,7 @@ public:
     /// Of a scene as loaded; the scene's own render settings apply. Throws Error(BadInput) if those name unknown ids.
     explicit Document(std::shared_ptr<const Scene> scene);
 
-    std::shared_ptr<const Scene> scene() const { return edited_; }    ///< edits of materials, lights, sky applied
+    std::shared_ptr<const Scene> scene() const { return edited_; }        ///< edits of materials, lights, sky applied
     std::shared_ptr<const Scene> loadedScene() const { return loaded_; }  ///< as loaded
     Camera camera() const { return cameraAt(time_); }  ///< at the document's time, the user's edits applied
     Camera cameraAt(float time) const;
@@ -69,9 +69,9 @@ public:
     /// Gives a module the parameters that `instance` has.
     void configure(const std::string& instance, Module& module) const;
 
-    /// Sets one value, and returns what that invalidates. Throws Error(Usage) naming the nearest id.
-    /// `environment.file` reads the image (Error(BadInput) if it cannot); `camera.select` drops the user's camera edits;
-    /// `scene.index` and `scene.variant` only take effect by loading again.
+    /// Sets one value, and returns what that invalidates. Throws Error(Usage) naming the nearest id. `environment.file`
+    /// reads the image (Error(BadInput) if it cannot); `camera.select` drops the user's camera edits; `scene.index` and
+    /// `scene.variant` only take effect by loading again.
     Redo set(const std::string& id, const ParameterValue& value, const std::string& where = "");
     Redo setText(const std::string& id, const std::string& text, const std::string& where = "");
     /// Takes values back to what they were before any change, and returns what that invalidates: a camera's follow its

@@ -8,8 +8,8 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "image/hdr.h"
-#include "reconstruct/catalog.h"
 #include "params/renaming_visitor.h"
+#include "reconstruct/catalog.h"
 #include "scene/asset_folder.h"
 
 namespace lumi {
@@ -103,25 +103,27 @@ void DocumentFields::addCamera(const Document& document, const std::string& filt
                        .options = options,
                        .help = "Which camera of the scene is looked through; choosing one drops what was flown",
                        .redo = Redo::Samples});
-        v.choice("camera.jitter", copy->jitter,
-                 {.label = "Jitter",
-                  .options = {"auto", "per-frame", "per-pixel", "none"},
-                  .help = "Where in its pixel a camera ray goes: one offset for the whole frame, one for each pixel, the "
-                          "centre, or what the first view's module prefers",
-                  .redo = Redo::Samples});
+        v.choice(
+            "camera.jitter", copy->jitter,
+            {.label = "Jitter",
+             .options = {"auto", "per-frame", "per-pixel", "none"},
+             .help = "Where in its pixel a camera ray goes: one offset for the whole frame, one for each pixel, the "
+                     "centre, or what the first view's module prefers",
+             .redo = Redo::Samples});
         RenamingVisitor renamed(v, "camera.");
         copy->camera.describe(renamed);
     };
-    groups.push_back({"camera.", describe, [copy](Document& d, const std::string& name, const auto& value, const auto&) {
-                          if (name == "select") {
-                              d.camera_ = copy->index;
-                              d.cameraEdits_.clear();
-                          } else if (name == "jitter") {
-                              d.jitter_ = copy->jitter;
-                          } else {
-                              d.cameraEdits_[name] = value;
-                          }
-                      }});
+    groups.push_back(
+        {"camera.", describe, [copy](Document& d, const std::string& name, const auto& value, const auto&) {
+             if (name == "select") {
+                 d.camera_ = copy->index;
+                 d.cameraEdits_.clear();
+             } else if (name == "jitter") {
+                 d.jitter_ = copy->jitter;
+             } else {
+                 d.cameraEdits_[name] = value;
+             }
+         }});
 }
 
 Scene& DocumentFields::edit(Document& document) {
@@ -196,15 +198,13 @@ void DocumentFields::addScene(const Document& document, const std::string& filte
         const std::string prefix = "material." + document.names_->materials[i] + ".";
         if (!concerns(prefix, filter) || document.names_->materials[i].empty()) continue;
         auto copy = std::make_shared<Material>(document.edited_->materials[i]);
-        groups.push_back({prefix,
-                          [copy, prefix](ParameterVisitor& v) {
-                              RenamingVisitor renamed(v, prefix);
-                              copy->describe(renamed);
-                          },
-                          [copy, i](Document& d, const auto&, const auto&, const auto&) {
-                              edit(d).materials[i] = *copy;
-                          },
-                          true});
+        groups.push_back(
+            {prefix,
+             [copy, prefix](ParameterVisitor& v) {
+                 RenamingVisitor renamed(v, prefix);
+                 copy->describe(renamed);
+             },
+             [copy, i](Document& d, const auto&, const auto&, const auto&) { edit(d).materials[i] = *copy; }, true});
     }
     for (size_t i = 0; i < document.names_->lights.size(); ++i) {
         const std::string prefix = "light." + document.names_->lights[i] + ".";
@@ -215,9 +215,7 @@ void DocumentFields::addScene(const Document& document, const std::string& filte
                               RenamingVisitor renamed(v, prefix);
                               copy->describe(renamed);
                           },
-                          [copy, i](Document& d, const auto&, const auto&, const auto&) {
-                              edit(d).lights[i] = *copy;
-                          },
+                          [copy, i](Document& d, const auto&, const auto&, const auto&) { edit(d).lights[i] = *copy; },
                           true});
     }
 }

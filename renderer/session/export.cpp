@@ -123,8 +123,8 @@ void exportView(const std::filesystem::path& path, const FrameOutput& frame, con
     writeView(path, frame, view, BufferSelection::parse(choice.buffers, view.module, "--buffers"), choice.half, state);
 }
 
-std::filesystem::path exportNewView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
-                                    const OutputChoice& choice, const std::string& state) {
+std::filesystem::path exportNewView(const std::filesystem::path& path, const FrameOutput& frame,
+                                    const Document& document, const OutputChoice& choice, const std::string& state) {
     const ViewSettings& view = document.view(choice.view);
     const BufferSelection buffers = BufferSelection::parse(choice.buffers, view.module, "--buffers");
     return writeNewFile(path, encodeView(path, frame, view, buffers, choice.half, state));

@@ -20,9 +20,9 @@ struct BufferSelection {
 
 /// What was written: what a replay needs besides the frames to write the same file again.
 struct OutputChoice {
-    int view = 0;             ///< whose module and picture
-    std::string buffers;      ///< as for --buffers
-    bool half = false;        ///< colours of an EXR as half
+    int view = 0;         ///< whose module and picture
+    std::string buffers;  ///< as for --buffers
+    bool half = false;    ///< colours of an EXR as half
 
     nlohmann::json json() const;
     static OutputChoice parse(const nlohmann::json& value, const std::string& where);
@@ -46,8 +46,8 @@ std::vector<uint8_t> encodeView(const std::filesystem::path& name, const FrameOu
 void exportView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
                 const OutputChoice& choice, const std::string& state);
 /// The same over no other file: see writeNewFile(). Returns the name.
-std::filesystem::path exportNewView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
-                                    const OutputChoice& choice, const std::string& state);
+std::filesystem::path exportNewView(const std::filesystem::path& path, const FrameOutput& frame,
+                                    const Document& document, const OutputChoice& choice, const std::string& state);
 
 /// Camera space to normalised device coordinates: x right, y up, both in [-1, 1] over the image.
 Mat4 ndcFromCamera(const CameraPose& camera);

@@ -14,8 +14,8 @@ namespace {
 
 /// Rays since `earlier`.
 TraceCounts difference(const TraceCounts& now, const TraceCounts& earlier) {
-    return {now.cameraRays - earlier.cameraRays, now.bounceRays - earlier.bounceRays, now.shadowRays - earlier.shadowRays,
-            now.nonFinite - earlier.nonFinite};
+    return {now.cameraRays - earlier.cameraRays, now.bounceRays - earlier.bounceRays,
+            now.shadowRays - earlier.shadowRays, now.nonFinite - earlier.nonFinite};
 }
 
 /// The worst that the differences between two lists of one module's parameters invalidate; nothing: none differ.
@@ -47,22 +47,23 @@ bool FrameOutput::rests() const {
 FrameEngine::FrameEngine(MessageLog& log, OnModuleError onError) : log_(log), onError_(onError) {}
 FrameEngine::~FrameEngine() = default;
 
-std::optional<FrameOutput> FrameEngine::advance(const FrameRequest& request, std::stop_token stop, std::stop_token sceneStop) {
+std::optional<FrameOutput> FrameEngine::advance(const FrameRequest& request, std::stop_token stop,
+                                                std::stop_token sceneStop) {
     Timer total;
     StageTimer timer;
     if (request.cut) before_.reset(), current_.reset();
     const bool replaces = current_ && request.frame == current_->frame;
     const std::optional<Completed>& previous = replaces ? before_ : current_;
 
-    Completed next{request.frame, request.document, request.activeInstances(), {}, Jitter::Auto, nullptr, nullptr, {}, {}, {}};
+    Completed next{
+        request.frame, request.document, request.activeInstances(), {}, Jitter::Auto, nullptr, nullptr, {}, {}, {}};
     const RenderSettings& render = request.document.render();
     next.camera = poseCamera(request.document.camera(), {render.width, render.height});
     next.cameraTrack = request.document.cameraTrack();
     requireReach(next.camera, request.document.scene()->path);
 
     FrameOutput frame;
-    frame.changes.cut = !previous || previous->frame + 1 != request.frame ||
-                        isCut(previous->state(), next.state());
+    frame.changes.cut = !previous || previous->frame + 1 != request.frame || isCut(previous->state(), next.state());
     prepareInstances(request, next.camera.extent, frame.changes.cut ? nullptr : &*previous);
     next.jitter = effectiveJitter(next.document);
     {
@@ -187,15 +188,15 @@ bool FrameEngine::bind(const std::shared_ptr<const PosedScene>& posed, const std
 }
 
 bool FrameEngine::traceSignals(const FrameRequest& request, const CameraPose& previousCamera, bool replaces,
-                               Completed& next, StageTimer& timer, std::stop_token stop, const std::stop_token& sceneStop) {
+                               Completed& next, StageTimer& timer, std::stop_token stop,
+                               const std::stop_token& sceneStop) {
     if (bound_ != next.scene) {
         const auto measured = timer.measure("build");
         if (!bind(next.scene, sceneStop)) return false;
     }
     const FrameSampling asked = sampling(request, next, previousCamera);
     if (replaces && current_->scene == next.scene && current_->camera == next.camera &&
-        current_->cameraTrack == next.cameraTrack &&
-        current_->signals->available().contains(asked.wanted)) {
+        current_->cameraTrack == next.cameraTrack && current_->signals->available().contains(asked.wanted)) {
         if (!differences(current_->state(), next.state(), *next.scene).sampling) {
             next.signals = current_->signals;
             next.rays = current_->rays;
@@ -226,21 +227,24 @@ bool FrameEngine::runModules(const FrameRequest& request, const Completed& next,
         Instance& current = running(name);
         TapSet wanted;
         if (const auto taps = request.taps.find(name); taps != request.taps.end()) wanted = taps->second;
-        if (const auto taps = shown.find(name); taps != shown.end()) wanted.insert(taps->second.begin(), taps->second.end());
+        if (const auto taps = shown.find(name); taps != shown.end())
+            wanted.insert(taps->second.begin(), taps->second.end());
         Changes changes = frame.changes;
         changes.cut = changes.cut || current.lastFrame < 0 || current.firstFrame == request.frame;
         frame.historyDropped = frame.historyDropped && !current.module->keepsHistory(changes);
 
         timer.setPrefix(name + ".");
-        const FrameContext context{request.frame, *next.signals, *next.scene, next.camera, previousCamera,
-                                   changes,       wanted,        tracer_,     asked,       timer,          stop, request.inspected};
+        const FrameContext context{request.frame,  *next.signals, *next.scene, next.camera,
+                                   previousCamera, changes,       wanted,      tracer_,
+                                   asked,          timer,         stop,        request.inspected};
         auto out = std::make_shared<Image>();
         const TraceCounts before = tracer_.counts();
         const Timer run;
         if (!runModule(name, context, *out, frame)) return false;
         frame.runMs[name] = run.elapsedMs();
         frame.runRays[name] = difference(tracer_.counts(), before);
-        frame.readsSignals[name] = current.failed || !current.module->reads().empty();  // what failed shows the noisy frame
+        // what failed shows the noisy frame
+        frame.readsSignals[name] = current.failed || !current.module->reads().empty();
         frame.moduleBytes[name] = current.module->byteCount();
         frame.droppedPixels[name] = current.failed ? 0 : current.module->droppedPixels();
         advise(name, *current.module);

@@ -21,9 +21,9 @@ namespace lumi {
 struct FrameRequest {
     const Document& document;
     FrameNumber frame = 0;
-    bool cut = false;                    ///< nothing before this frame counts: as in a fresh engine
-    SignalSet signals;                   ///< wanted beyond what the modules read and the views show
-    std::map<std::string, TapSet> taps;  ///< wanted beyond what the views show, by instance
+    bool cut = false;                      ///< nothing before this frame counts: as in a fresh engine
+    SignalSet signals;                     ///< wanted beyond what the modules read and the views show
+    std::map<std::string, TapSet> taps;    ///< wanted beyond what the views show, by instance
     std::vector<std::string> instances{};  ///< that run besides those of the views
     std::optional<Pixel> inspected{};      ///< whose lineages are wanted
 
@@ -47,7 +47,7 @@ struct FrameOutput {
     std::map<std::string, Convergence> convergence;               ///< by instance
     std::map<std::string, Lineage> lineages;                      ///< by instance, of the pixel asked about
     std::vector<std::pair<std::string, double>> stagesMs;
-    std::map<std::string, double> runMs;  ///< by instance: its run() as a whole
+    std::map<std::string, double> runMs;         ///< by instance: its run() as a whole
     std::map<std::string, TraceCounts> runRays;  ///< by instance: those that it traced itself, beside `rays`
     std::map<std::string, bool> readsSignals;    ///< by instance: does it read any of the frame's signals?
     double frameMs = 0;
@@ -57,34 +57,39 @@ struct FrameOutput {
     bool rests() const;
 };
 
-/// Runs frames, one after the other, on the calling thread and the pool: pose, trace what someone reads (nothing, if the
-/// modules place their own rays and no view shows a signal), run the modules. Both the interactive session and `render` drive it; what it makes depends only on the requests.
+/// Runs frames, one after the other, on the calling thread and the pool: pose, trace what someone reads (nothing, if
+/// the modules place their own rays and no view shows a signal), run the modules. Both the interactive session and
+/// `render` drive it; what it makes depends only on the requests.
 class FrameEngine {
 public:
     enum class OnModuleError { Throw, ShowRawFrame };
     explicit FrameEngine(MessageLog& log, OnModuleError onError = OnModuleError::Throw);
     ~FrameEngine();
 
-    /// Draws a frame, or returns nothing if it was stopped; then the same number asked for again is as if it had not been. A frame with the number of the
-    /// last completed one replaces it, seen from the same frame before; any other number but the next is a cut.
-    /// Building the scene goes on when `stop` is requested, since the next frame needs it too, and ends with `sceneStop`.
-    std::optional<FrameOutput> advance(const FrameRequest& request, std::stop_token stop = {}, std::stop_token sceneStop = {});
+    /// Draws a frame, or returns nothing if it was stopped; then the same number asked for again is as if it had not
+    /// been. A frame with the number of the last completed one replaces it, seen from the same frame before; any other
+    /// number but the next is a cut. Building the scene goes on when `stop` is requested, since the next frame needs it
+    /// too, and ends with `sceneStop`.
+    std::optional<FrameOutput> advance(const FrameRequest& request, std::stop_token stop = {},
+                                       std::stop_token sceneStop = {});
 
-    /// Can frame `frame`, the last completed one, be replaced? Not after a frame was stopped when one module had already
-    /// run it, nor before the first frame after a cut that was asked for.
+    /// Can frame `frame`, the last completed one, be replaced? Not after a frame was stopped when one module had
+    /// already run it, nor before the first frame after a cut that was asked for.
     bool canRepeat(FrameNumber frame) const;
 
-    /// A coarse picture of what the document shows, for the while that it keeps changing: one sample a pixel at `extent`,
-    /// the raw frame in every module's place. It leaves history and the last completed frame as they are. Nothing if
-    /// it was stopped.
+    /// A coarse picture of what the document shows, for the while that it keeps changing: one sample a pixel at
+    /// `extent`, the raw frame in every module's place. It leaves history and the last completed frame as they are.
+    /// Nothing if it was stopped.
     std::optional<FrameOutput> preview(const Document& document, Extent2 extent, std::stop_token stop = {},
                                        std::stop_token sceneStop = {});
     /// Signals of the scene that was traced last, sampled otherwise; nothing if it was stopped. It counts to no frame.
     std::shared_ptr<const Signals> sampleAgain(const FrameSampling& sampling, std::stop_token stop = {});
-    /// World position of what `camera` sees through the middle of a pixel, in the scene that was traced last; nothing on the sky.
+    /// World position of what `camera` sees through the middle of a pixel, in the scene that was traced last; nothing
+    /// on the sky.
     std::optional<Vec3> surfaceAt(const CameraPose& camera, Pixel pixel);
     /// checkFrames() with this engine's tracer. Throws Error(Interrupted) when stopped.
-    std::vector<FrameCheck> checkSignals(const Document& document, std::stop_token stop, std::stop_token sceneStop = {});
+    std::vector<FrameCheck> checkSignals(const Document& document, std::stop_token stop,
+                                         std::stop_token sceneStop = {});
 
     /// Rays of the frame being traced, for a progress bar; from any thread.
     TraceCounts tracedSoFar() const { return tracer_.counts(); }
@@ -127,8 +132,8 @@ private:
     bool bind(const std::shared_ptr<const PosedScene>& posed, const std::stop_token& stop);
     bool traceSignals(const FrameRequest& request, const CameraPose& previousCamera, bool replaces, Completed& next,
                       StageTimer& timer, std::stop_token stop, const std::stop_token& sceneStop);
-    bool runModules(const FrameRequest& request, const Completed& next, const CameraPose& previousCamera, FrameOutput& frame,
-                    StageTimer& timer, std::stop_token stop);
+    bool runModules(const FrameRequest& request, const Completed& next, const CameraPose& previousCamera,
+                    FrameOutput& frame, StageTimer& timer, std::stop_token stop);
     void advise(const std::string& name, const Module& module);
     bool runModule(const std::string& name, const FrameContext& context, Image& out, FrameOutput& frame);
 

@@ -7,8 +7,8 @@
 
 namespace lumi {
 
-/// Scene at the document's time, seen from `previousTime`; one of `known` (may be null) is taken if it is just that. Null
-/// if it was stopped.
+/// Scene at the document's time, seen from `previousTime`; one of `known` (may be null) is taken if it is just that.
+/// Null if it was stopped.
 inline std::shared_ptr<const PosedScene> pose(const Document& document, float previousTime, const PosedScene* earlier,
                                               std::initializer_list<std::shared_ptr<const PosedScene>> known,
                                               const std::stop_token& stop = {}) {

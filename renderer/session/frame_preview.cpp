@@ -39,7 +39,8 @@ std::optional<FrameOutput> FrameEngine::preview(const Document& document, Extent
     return frame;
 }
 
-std::vector<FrameCheck> FrameEngine::checkSignals(const Document& document, std::stop_token stop, std::stop_token sceneStop) {
+std::vector<FrameCheck> FrameEngine::checkSignals(const Document& document, std::stop_token stop,
+                                                  std::stop_token sceneStop) {
     bound_ = nullptr;  // the tracer is left bound to moments of the check
     return checkFrames(document, tracer_, stop, sceneStop);
 }

@@ -35,8 +35,10 @@ std::shared_ptr<const Image8> shown(const Image& image, float exposureEv, ToneCu
 /// Values on which depends to what, and how, an image of the module converges.
 std::string settingsOf(const Document& document, const std::string& module) {
     std::string text;
-    for (const std::string& group : {module + ".", std::string("path."), std::string("sampler."), std::string("render.spp")})
-        for (const ParameterInfo& info : document.list(group)) text += info.id + '=' + formatParameter(info.value) + '\n';
+    for (const std::string& group :
+         {module + ".", std::string("path."), std::string("sampler."), std::string("render.spp")})
+        for (const ParameterInfo& info : document.list(group))
+            text += info.id + '=' + formatParameter(info.value) + '\n';
     return text;
 }
 
@@ -109,7 +111,8 @@ void LiveMetrics::loadReference(const std::filesystem::path& file, float exposur
         made.held->image = loadImage(file);
         made.held->asShown = !isLinearFile(file);
         made.status.name = file.filename().string();
-        made.status.picture = made.held->asShown ? shown(made.held->image, 0, ToneCurve::Clamp) : shown(made.held->image, exposureEv);
+        made.status.picture =
+            made.held->asShown ? shown(made.held->image, 0, ToneCurve::Clamp) : shown(made.held->image, exposureEv);
         return made;
     });
 }
@@ -224,11 +227,12 @@ void LiveMetrics::run(std::stop_token quit) {
         auto measured = std::make_shared<LiveMeasurement>();
         try {
             if (fits(*snapshot)) *measured = measure(*snapshot, *reference, metrics, map);
-            else measured->problem = reference->image.extent() == snapshot->extent
-                                         ? "The reference is of another camera, time, scene or light transport."
-                                         : fmt::format("The reference has {} x {} pixels, the picture {} x {}.",
-                                                       reference->image.width(), reference->image.height(),
-                                                       snapshot->extent.width, snapshot->extent.height);
+            else
+                measured->problem = reference->image.extent() == snapshot->extent
+                                        ? "The reference is of another camera, time, scene or light transport."
+                                        : fmt::format("The reference has {} x {} pixels, the picture {} x {}.",
+                                                      reference->image.width(), reference->image.height(),
+                                                      snapshot->extent.width, snapshot->extent.height);
         } catch (const std::exception& error) {  // an image or a map for which there is no memory
             measured->problem = std::string("Nothing could be measured: ") + error.what();
         }
@@ -271,8 +275,8 @@ LiveMeasurement LiveMetrics::measure(const Snapshot& snapshot, const Held& refer
     return result;
 }
 
-/// Adds a point to each pane's curve; the caller holds the lock. Where samples go back, or something else converges, a curve
-/// begins again.
+/// Adds a point to each pane's curve; the caller holds the lock. Where samples go back, or something else converges, a
+/// curve begins again.
 void LiveMetrics::note(const LiveMeasurement& measurement) {
     if (!measurement.problem.empty()) return;
     auto curves = curves_ ? std::make_shared<ConvergenceCurves>(*curves_) : std::make_shared<ConvergenceCurves>();

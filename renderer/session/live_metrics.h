@@ -20,18 +20,18 @@ namespace lumi {
 /// How far one pane's result is from the reference.
 struct PaneMeasurement {
     std::string module;
-    std::string settings;  ///< values of the module's and the light paths' parameters, as text
-    std::map<std::string, double> values;  ///< by metric id; NaN where there is no value
+    std::string settings;                        ///< values of the module's and the light paths' parameters, as text
+    std::map<std::string, double> values;        ///< by metric id; NaN where there is no value
     std::map<std::string, std::string> reasons;  ///< by metric id: why a value is NaN or infinite
     int64_t nonFinitePixels = 0;
-    std::shared_ptr<const Image8> map;     ///< error map of the metric asked for; null without one
+    std::shared_ptr<const Image8> map;  ///< error map of the metric asked for; null without one
     DisplayInfo mapInfo;
 };
 
 /// What was measured of one snapshot.
 struct LiveMeasurement {
-    uint64_t serial = 0;  ///< Snapshot::serial
-    uint64_t samples = 0; ///< a pixel that the progressive mean had then
+    uint64_t serial = 0;   ///< Snapshot::serial
+    uint64_t samples = 0;  ///< a pixel that the progressive mean had then
     std::vector<PaneMeasurement> panes;
     std::string problem;  ///< why nothing was measured; empty: it was
     double ms = 0;        ///< what it took
@@ -50,10 +50,10 @@ struct ReferenceStatus {
     bool working = false;        ///< it is read or made
     ReferenceProgress progress;  ///< while it is made
     bool present = false;
-    std::string name;            ///< a file, or "1024 spp"
+    std::string name;  ///< a file, or "1024 spp"
     Extent2 extent;
-    uint64_t samples = 0;        ///< a pixel; 0: unknown
-    double error = 0;            ///< its own, relative; 0: unknown
+    uint64_t samples = 0;                   ///< a pixel; 0: unknown
+    double error = 0;                       ///< its own, relative; 0: unknown
     std::shared_ptr<const Image8> picture;  ///< as shown: ACES at the scene's exposure
 };
 
@@ -79,8 +79,8 @@ public:
     /// The latest picture; previews and pictures that were seen are left out.
     void offer(std::shared_ptr<const Snapshot> snapshot);
     std::shared_ptr<const LiveMeasurement> latest() const;
-    /// How each pane's module came nearer to this reference since it was set, or since the pane has this module with these
-    /// parameters; at most a few hundred points; null before the first.
+    /// How each pane's module came nearer to this reference since it was set, or since the pane has this module with
+    /// these parameters; at most a few hundred points; null before the first.
     std::shared_ptr<const ConvergenceCurves> curves() const;
 
 private:
@@ -107,7 +107,7 @@ private:
     std::shared_ptr<const LiveMeasurement> latest_;
     std::shared_ptr<const ConvergenceCurves> curves_;
     std::vector<std::string> curvesOf_;  ///< module and settings of each
-    uint64_t generation_ = 0;  ///< of what was asked for last
+    uint64_t generation_ = 0;            ///< of what was asked for last
     /// What makes or reads a reference; it says when it is done. The last is the one that was asked for last.
     struct Maker {
         std::atomic<bool> done{false};

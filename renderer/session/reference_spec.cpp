@@ -35,11 +35,12 @@ ReferenceSpec referenceSpec(const Document& document) {
     for (const auto& [id, value] : changed.items())
         if (editsScene(id) && id != "environment.file") edits[id] = value;
     if (!document.environmentDigest().empty()) edits[Document::kEnvironmentDigest] = document.environmentDigest();
-    spec.sceneKey = nlohmann::json{{"digest", document.loadedScene()->contentDigest},
-                                   {"index", document.sceneIndex()},
-                                   {"variant", document.sceneVariant()},
-                                   {"edits", edits}}
-                        .dump();
+    spec.sceneKey = nlohmann::json{
+        {"digest", document.loadedScene()->contentDigest},
+        {"index", document.sceneIndex()},
+        {"variant", document.sceneVariant()},
+        {"edits",
+         edits}}.dump();
     return spec;
 }
 

@@ -20,7 +20,8 @@ const json& member(const json& object, const char* key, json::value_t type, cons
     const bool number = type == json::value_t::number_integer && found->is_number_integer();
     const bool real = type == json::value_t::number_float && found->is_number();
     if (found->type() != type && !number && !real)
-        throwBadInput({std::string("the embedded state's \"") + key + "\" has the wrong type", where, "", found->dump()});
+        throwBadInput(
+            {std::string("the embedded state's \"") + key + "\" has the wrong type", where, "", found->dump()});
     return *found;
 }
 
@@ -89,11 +90,11 @@ Replay parseReplay(const std::string& text, const std::string& where) {
     for (const json& entry : member(state, "frames", json::value_t::array, where)) addFrames(replay, entry, where);
     const auto& sets = replay.sets;
     const auto& ticks = replay.ticks;
-    const bool ordered = std::adjacent_find(sets.begin(), sets.end(), [](const auto& a, const auto& b) {
-                             return b.first <= a.first;
-                         }) == sets.end() && std::adjacent_find(ticks.begin(), ticks.end(), [](const auto& a, const auto& b) {
-                             return b.first <= a.last;
-                         }) == ticks.end();
+    const bool ordered =
+        std::adjacent_find(sets.begin(), sets.end(), [](const auto& a, const auto& b) { return b.first <= a.first; }) ==
+            sets.end() &&
+        std::adjacent_find(ticks.begin(), ticks.end(),
+                           [](const auto& a, const auto& b) { return b.first <= a.last; }) == ticks.end();
     if (replay.first < 0 || replay.last < replay.first || !ordered)
         throwBadInput({"the embedded state's frames are out of order", where, "", ""});
     replay.output = state.value("output", json::object());

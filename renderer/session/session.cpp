@@ -69,8 +69,8 @@ void Session::Impl::watch(std::stop_token quit) {
     }
 }
 
-/// More of the shown frame is asked for than it has. If no frame follows that has it, it is drawn again; nothing that is
-/// being drawn is given up for that.
+/// More of the shown frame is asked for than it has. If no frame follows that has it, it is drawn again; nothing that
+/// is being drawn is given up for that.
 void Session::Impl::lookCloser() {
     if (!document || (rendering && !resting)) return;
     ++revision;  // what is shown is not all that is asked for
@@ -169,8 +169,8 @@ void Session::setAll(const std::vector<std::pair<std::string, ParameterValue>>& 
     }
     impl_->timeEdited = impl_->timeEdited || timeEdited;
     const uint64_t environment = skyEdited ? ++impl_->environmentGeneration : 0;
-    const bool reload = next.sceneIndex() != impl_->document->sceneIndex() ||
-                        next.sceneVariant() != impl_->document->sceneVariant();
+    const bool reload =
+        next.sceneIndex() != impl_->document->sceneIndex() || next.sceneVariant() != impl_->document->sceneVariant();
     Impl::Origin origin = impl_->origin;
     if (!reload) {
         impl_->history.begin(*impl_->document, ids);

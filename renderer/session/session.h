@@ -19,23 +19,23 @@ namespace lumi {
 
 /// One view, ready for the screen.
 struct PaneSnapshot {
-    std::string module, buffer;   ///< what it shows
-    std::string label;            ///< "accumulate, 132 spp, equal samples"
+    std::string module, buffer;  ///< what it shows
+    std::string label;           ///< "accumulate, 132 spp, equal samples"
     std::shared_ptr<const Image8> pixels;
     DisplayInfo info;
-    int64_t droppedPixels = 0;    ///< that the module dropped from its input: NaN or infinite
+    int64_t droppedPixels = 0;  ///< that the module dropped from its input: NaN or infinite
 };
 
 /// What the engine publishes after each frame: immutable, shared with the UI.
 struct Snapshot {
     FrameNumber frame = -1;
-    uint64_t serial = 0;          ///< grows with each publication
-    uint64_t revision = 0;        ///< of the document that the last whole frame shows: Session::revision() then
-    bool preview = false;         ///< coarse, while changes keep coming: pictures alone, neither results nor signals
-    Extent2 traced;               ///< pixels that were traced: `extent`, or fewer in a preview
+    uint64_t serial = 0;    ///< grows with each publication
+    uint64_t revision = 0;  ///< of the document that the last whole frame shows: Session::revision() then
+    bool preview = false;   ///< coarse, while changes keep coming: pictures alone, neither results nor signals
+    Extent2 traced;         ///< pixels that were traced: `extent`, or fewer in a preview
     float time = 0;
     uint64_t accumulatedSamples = 0;  ///< per pixel, of the progressive mean; 0 if no module accumulates
-    uint64_t targetSamples = 0;   ///< where the progressive mean stops and the engine rests; 0: never
+    uint64_t targetSamples = 0;       ///< where the progressive mean stops and the engine rests; 0: never
     Extent2 extent;
     CameraPose camera;
     std::shared_ptr<const PosedScene> scene;
@@ -47,15 +47,15 @@ struct Snapshot {
     std::vector<PaneSnapshot> panes;
     std::vector<std::pair<std::string, double>> stagesMs;
     double frameMs = 0;
-    double framesPerSecond = 0;   ///< that were completed one after the other until this one; 0: it is the first
-    TraceCounts rays;             ///< of this frame
+    double framesPerSecond = 0;  ///< that were completed one after the other until this one; 0: it is the first
+    TraceCounts rays;            ///< of this frame
     double raysPerSecond = 0;
 };
 
 /// A buffer a view can show, for the selector.
 struct BufferEntry {
-    std::string name;     ///< as ViewSettings::buffer
-    std::string group;    ///< "Result", "Lighting", "Geometry", module title
+    std::string name;   ///< as ViewSettings::buffer
+    std::string group;  ///< "Result", "Lighting", "Geometry", module title
     std::string channels, unit, help;
 };
 
@@ -120,12 +120,12 @@ public:
     /// Is a frame, an earlier one, a file or a check being made, or due? While not, the snapshot is the last one until
     /// something is asked for.
     bool busy() const;
-    void setRendering(bool on);   ///< pause or go on
+    void setRendering(bool on);  ///< pause or go on
     bool rendering() const;
-    void setPlaying(bool on);     ///< does time advance by 1/fps a frame
+    void setPlaying(bool on);  ///< does time advance by 1/fps a frame
     bool playing() const;
-    void step();                  ///< one frame, then pause
-    void stepBack();              ///< draws the previous frame again, bit for bit, then pause
+    void step();                          ///< one frame, then pause
+    void stepBack();                      ///< draws the previous frame again, bit for bit, then pause
     void restart(FrameNumber first = 0);  ///< begins at that frame, history forgotten
     /// How far a step back that draws earlier frames again has come, 0 to 1; nothing while none is under way.
     std::optional<float> steppingBack() const;
@@ -143,16 +143,17 @@ public:
     void setInspectedPixel(std::optional<Pixel> pixel);
     /// All buffers present in the snapshot at a pixel.
     std::vector<PixelValue> inspect(const Snapshot& snapshot, Pixel pixel) const;
-    /// World position of what is seen through the middle of a pixel of the last frame; nothing where that is the sky, or
-    /// before there is a frame. The answer comes between frames; abandoned (std::future_error) when the session ends.
+    /// World position of what is seen through the middle of a pixel of the last frame; nothing where that is the sky,
+    /// or before there is a frame. The answer comes between frames; abandoned (std::future_error) when the session
+    /// ends.
     std::future<std::optional<Vec3>> surfaceAt(Pixel pixel);
 
-    /// Writes the view's picture (.png: as shown; .exr: linear with the buffers as layers, colours as half if asked for),
-    /// state embedded. It is what is seen now; changes that come later wait for it. Runs in the background; success and
-    /// failure arrive in the log.
+    /// Writes the view's picture (.png: as shown; .exr: linear with the buffers as layers, colours as half if asked
+    /// for), state embedded. It is what is seen now; changes that come later wait for it. Runs in the background;
+    /// success and failure arrive in the log.
     void saveView(int view, const std::filesystem::path& path, const std::string& buffers = "all", bool half = false);
-    /// The same with all buffers as `<stem>.<instance>.<buffer>.<frame:04>.<extension>`, a name that is not taken; instance,
-    /// buffer and frame are those of the picture that is written.
+    /// The same with all buffers as `<stem>.<instance>.<buffer>.<frame:04>.<extension>`, a name that is not taken;
+    /// instance, buffer and frame are those of the picture that is written.
     void captureView(int view, const std::filesystem::path& stem, const std::string& extension);
     /// Checks the signals of each scene after its first frames.
     void setCheckingScenes(bool on);

@@ -26,7 +26,7 @@ struct Session::Impl {
     struct Save {
         std::filesystem::path path;  ///< of a capture: what its name begins with
         OutputChoice choice;
-        std::string capture{};       ///< extension of a capture; empty: it is none
+        std::string capture{};  ///< extension of a capture; empty: it is none
     };
     /// What surface is seen in a pixel.
     struct Question {
@@ -40,13 +40,13 @@ struct Session::Impl {
         bool cut = false;
         FrameNumber firstFrame = 0;  ///< after a cut
         Extent2 coarse;              ///< of a preview
-        std::optional<Redo> redo;  ///< what the changes that it takes up invalidate
+        std::optional<Redo> redo;    ///< what the changes that it takes up invalidate
         int stepsBack = 0;
         bool inspecting = false;  ///< every buffer is wanted
         std::optional<Pixel> inspectedPixel;
-        uint64_t revision = 0;    ///< of the document
-        uint64_t sceneNumber = 0; ///< of the scene that this work is about
-        StateLog states;          ///< as it was then, for StepBack and SaveView
+        uint64_t revision = 0;     ///< of the document
+        uint64_t sceneNumber = 0;  ///< of the scene that this work is about
+        StateLog states;           ///< as it was then, for StepBack and SaveView
         Save save;
         std::shared_ptr<Question> question;
         std::stop_token stop, sceneStop;
@@ -124,15 +124,15 @@ struct Session::Impl {
     std::shared_ptr<const SignalCheck> signalCheck;
     std::deque<Save> saves;
     std::deque<std::shared_ptr<Question>> questions;
-    bool resting = false;    ///< the shown frame has converged
+    bool resting = false;      ///< the shown frame has converged
     bool frameFailed = false;  ///< drawing failed: wait for a change
     std::stop_source frameStop;
     std::stop_source sceneStop;  ///< of building the scene, which changes let go on: another scene took its place
-    bool working = false;  ///< something was taken up and is not done
-    bool drawing = false;  ///< it is a frame that changes may abandon
-    bool steppingBack = false;  ///< it is one of those that a step back runs
-    bool heldBack = false;  ///< a change came in a stream of changes: see kStreamMs
-    bool guarded = false;  ///< the frame before was abandoned
+    bool working = false;        ///< something was taken up and is not done
+    bool drawing = false;        ///< it is a frame that changes may abandon
+    bool steppingBack = false;   ///< it is one of those that a step back runs
+    bool heldBack = false;       ///< a change came in a stream of changes: see kStreamMs
+    bool guarded = false;        ///< the frame before was abandoned
     Timer sinceFrameBegan, sinceChange;
     double msPerSample = 0;          ///< of one sample of one pixel, as last measured; 0: not yet
     uint64_t previewedRevision = 0;  ///< of the document that the last preview showed

@@ -29,15 +29,17 @@ void takeInteractiveSize(Document& document) {
     const RenderSettings& render = document.render();
     const double scale = std::sqrt(kPixels / (static_cast<double>(render.width) * render.height));
     if (scale >= 1) return;
-    const int width = static_cast<int>(std::lround(render.width * scale)), height = static_cast<int>(std::lround(render.height * scale));
+    const int width = static_cast<int>(std::lround(render.width * scale)),
+              height = static_cast<int>(std::lround(render.height * scale));
     document.set("render.width", std::max(width, 1));
     document.set("render.height", std::max(height, 1));
 }
 
-/// The document of a new scene, with what outlives the one before, then what was asked for, and without what is to be as the
-/// scene has it; refusals go to `log`.
-void prepare(Document& next, const std::optional<Document>& before, const std::vector<std::pair<std::string, std::string>>& wanted,
-             const std::vector<std::string>& reset, MessageLog& log) {
+/// The document of a new scene, with what outlives the one before, then what was asked for, and without what is to be
+/// as the scene has it; refusals go to `log`.
+void prepare(Document& next, const std::optional<Document>& before,
+             const std::vector<std::pair<std::string, std::string>>& wanted, const std::vector<std::string>& reset,
+             MessageLog& log) {
     takeInteractiveSize(next);
     if (before) {
         const nlohmann::json kept = before->changedValues();
@@ -99,7 +101,8 @@ void Session::Impl::startLoading(const Origin& wanted, const std::vector<std::st
     runAside([this, wanted, reset, generation, stop](std::stop_token) { load(wanted, reset, generation, stop); });
 }
 
-void Session::Impl::load(const Origin& wanted, const std::vector<std::string>& reset, uint64_t generation, std::stop_token stop) {
+void Session::Impl::load(const Origin& wanted, const std::vector<std::string>& reset, uint64_t generation,
+                         std::stop_token stop) {
     LoadOptions options;
     options.sceneIndex = wanted.index;
     options.variant = wanted.variant;

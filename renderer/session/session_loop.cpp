@@ -72,8 +72,8 @@ std::optional<Extent2> Session::Impl::previewExtent() const {
     return Extent2{side(render.width), side(render.height)};
 }
 
-/// Is the shown frame what was to be saved, and can it be? Behind a preview the frame that it stands for is yet to come, and a
-/// frame of which a part was drawn anew cannot be drawn again with its buffers.
+/// Is the shown frame what was to be saved, and can it be? Behind a preview the frame that it stands for is yet to
+/// come, and a frame of which a part was drawn anew cannot be drawn again with its buffers.
 bool Session::Impl::mayBeSaved(const Save& save) const {
     if (!shownDocument) return false;
     const bool followed = pending || restartWanted || stepsBack > 0;
@@ -93,7 +93,8 @@ bool Session::Impl::takeSave(Work& work) {
     return true;
 }
 
-/// Work that draws no new frame of the sequence: earlier ones again, a preview, a file, a check. False if there is none.
+/// Work that draws no new frame of the sequence: earlier ones again, a preview, a file, a check. False if there is
+/// none.
 bool Session::Impl::takeAside(Work& work) {
     if (!questions.empty()) {
         work.kind = Work::Pick;
@@ -216,11 +217,10 @@ FrameRequest Session::Impl::requestOf(const Work& work, const Document& drawn, F
 
 void Session::Impl::drawFrame(const Work& work) {
     const bool first = work.cut || shown.number < 0;
-    const FrameNumber number = first                          ? work.firstFrame
-                               : work.kind == Work::Redraw ? shown.number
-                                                           : shown.number + 1;
+    const FrameNumber number = first ? work.firstFrame : work.kind == Work::Redraw ? shown.number : shown.number + 1;
     Timer timer;
-    std::optional<FrameOutput> frame = engine.advance(requestOf(work, *work.document, number, first), work.stop, work.sceneStop);
+    std::optional<FrameOutput> frame =
+        engine.advance(requestOf(work, *work.document, number, first), work.stop, work.sceneStop);
     if (frame) {
         complete(std::move(*frame), work);
         // The scene before, its loaders' scratch and its frames are gone: their memory goes back to the system.

@@ -28,11 +28,13 @@ std::string paneLabel(const FrameOutput& frame, const ViewSettings& view, bool e
         const auto bytes = frame.moduleBytes.find(view.module);
         if (rays == frame.runRays.end() || bytes == frame.moduleBytes.end()) return label;
         const auto pixels = static_cast<double>(std::max<int64_t>(frame.camera.extent.area(), 1));
-        return label + fmt::format(", {:.3g} camera rays/px of its own, {:.0f} bytes/px", static_cast<double>(rays->second.cameraRays) / pixels,
+        return label + fmt::format(", {:.3g} camera rays/px of its own, {:.0f} bytes/px",
+                                   static_cast<double>(rays->second.cameraRays) / pixels,
                                    static_cast<double>(bytes->second) / pixels);
     }
     uint64_t samples = static_cast<uint64_t>(frame.signals->samplesPerPixel());
-    if (convergence != frame.convergence.end() && convergence->second.samples > 0) samples = convergence->second.samples;
+    if (convergence != frame.convergence.end() && convergence->second.samples > 0)
+        samples = convergence->second.samples;
     return label + fmt::format(", {} spp", samples) + (equal ? ", equal samples" : "");
 }
 
@@ -41,7 +43,8 @@ std::shared_ptr<const Image8> enlarged(const Image8& coarse, Extent2 extent) {
     auto full = std::make_shared<Image8>();
     full->extent = extent;
     const auto width = static_cast<size_t>(extent.width), height = static_cast<size_t>(extent.height);
-    const auto coarseWidth = static_cast<size_t>(coarse.extent.width), coarseHeight = static_cast<size_t>(coarse.extent.height);
+    const auto coarseWidth = static_cast<size_t>(coarse.extent.width),
+               coarseHeight = static_cast<size_t>(coarse.extent.height);
     full->rgba.resize(4 * width * height);
     size_t drawn = coarseHeight;  // the coarse row in the row above
     for (size_t y = 0; y < height; ++y) {
@@ -98,7 +101,8 @@ void Session::Impl::publish() {
         pane.buffer = view.buffer;
         pane.label = paneLabel(shown, view, equal);
         pane.pixels = drawView(shown, view, pane.info);
-        if (const auto dropped = shown.droppedPixels.find(view.module); dropped != shown.droppedPixels.end()) pane.droppedPixels = dropped->second;
+        if (const auto dropped = shown.droppedPixels.find(view.module); dropped != shown.droppedPixels.end())
+            pane.droppedPixels = dropped->second;
     }
     for (const auto& [name, convergence] : shown.convergence) {
         if (convergence.samples == 0 || next->accumulatedSamples > 0) continue;

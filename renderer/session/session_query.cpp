@@ -37,21 +37,24 @@ void addValue(const std::string& name, const std::string& channels, const Image&
 
 std::vector<BufferEntry> Session::buffers(const std::string& instance) const {
     const ModuleEntry& entry = findModule(instance);
-    std::vector<BufferEntry> buffers{{"image", "Result", "RGB", "W/(m^2 sr)", std::string(entry.title) + ", the result"}};
+    std::vector<BufferEntry> buffers{
+        {"image", "Result", "RGB", "W/(m^2 sr)", std::string(entry.title) + ", the result"}};
     const auto module = entry.make();
     for (const Tap& tap : module->taps()) buffers.push_back({tap.name, entry.title, tap.channels, tap.unit, tap.help});
     for (const char* group : {"Lighting", "Material", "Geometry"})
         for (int i = 0; i < kSignalCount; ++i) {
             const Signal signal = static_cast<Signal>(i);
             const SignalInfo& info = signalInfo(signal);
-            if (std::string(groupOf(signal)) == group) buffers.push_back({info.name, group, info.channels, info.unit, info.help});
+            if (std::string(groupOf(signal)) == group)
+                buffers.push_back({info.name, group, info.channels, info.unit, info.help});
         }
     return buffers;
 }
 
 std::vector<PixelValue> Session::inspect(const Snapshot& snapshot, Pixel pixel) const {
     std::vector<PixelValue> values;
-    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= snapshot.extent.width || pixel.y >= snapshot.extent.height) return values;
+    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= snapshot.extent.width || pixel.y >= snapshot.extent.height)
+        return values;
     for (const auto& [name, image] : snapshot.results) addValue(name, "RGB", *image, pixel, values);
     for (const auto& [name, image] : snapshot.taps) {
         const std::string instance = name.substr(0, name.rfind('-')), tap = name.substr(name.rfind('-') + 1);

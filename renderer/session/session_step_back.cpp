@@ -23,7 +23,8 @@ void Session::Impl::stepBack(const Work& work) {
         StateLog::Entry entry = before.entry(i);
         const bool cut = i == start;
         std::optional<FrameOutput> next =
-            engine.advance(i == target ? requestOf(work, *entry.document, entry.frame, cut) : FrameRequest{*entry.document, entry.frame, cut, {}, {}},
+            engine.advance(i == target ? requestOf(work, *entry.document, entry.frame, cut)
+                                       : FrameRequest{*entry.document, entry.frame, cut, {}, {}},
                            work.stop, work.sceneStop);
         if (!next) break;
         next->changes.cut = entry.cut;  // the log keeps what was, not that a replay begins with a cut
@@ -49,8 +50,8 @@ void Session::Impl::stepBack(const Work& work) {
     }
 }
 
-/// The document becomes that of the frame stepped back to; edits that came meanwhile stay on top of it. The caller holds
-/// the lock.
+/// The document becomes that of the frame stepped back to; edits that came meanwhile stay on top of it. The caller
+/// holds the lock.
 void Session::Impl::adoptSteppedBack(const Work& work) {
     Document next = *shownDocument;
     if (revision != work.revision) {

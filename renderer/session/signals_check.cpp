@@ -23,7 +23,8 @@ Extent2 smallExtent(const RenderSettings& render) {
     return {side(render.width), side(render.height)};
 }
 
-/// The camera on a circle around its target, about its up direction; one that looks along that turns about the image's up.
+/// The camera on a circle around its target, about its up direction; one that looks along that turns about the image's
+/// up.
 Camera orbited(Camera camera, float degrees) {
     const float angle = glm::radians(degrees);
     const Vec3 up = unitUp(camera), arm = camera.eye - camera.target;
@@ -46,10 +47,12 @@ FrameCheck checkFrame(Tracer& tracer, const FrameSampling& sampling, std::stop_t
 }  // namespace
 
 bool FrameCheck::holds() const {
-    return std::all_of(findings.begin(), findings.end(), [](const ContractFinding& finding) { return finding.holds(); });
+    return std::all_of(findings.begin(), findings.end(),
+                       [](const ContractFinding& finding) { return finding.holds(); });
 }
 
-std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop_token stop, std::stop_token sceneStop) {
+std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop_token stop,
+                                    std::stop_token sceneStop) {
     const Extent2 extent = smallExtent(document.render());
     const std::string size = fmt::format("{}x{}, {} samples a pixel", extent.width, extent.height, kSamples);
     const float before = document.time();
@@ -78,7 +81,8 @@ std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop
     sampling.previousCamera = sampling.camera;
     sampling.camera = poseCamera(orbited(document.camera(), kOrbitDeg), extent);
     sampling.jitter = Jitter::PerFrame;
-    tracer.bind(poseScene(document.scene(), {document.time(), document.time() + open, before}, first.get(), sceneStop), sceneStop);
+    tracer.bind(poseScene(document.scene(), {document.time(), document.time() + open, before}, first.get(), sceneStop),
+                sceneStop);
     checks.push_back(checkFrame(tracer, sampling, stop));
     checks.back().what = size + ", jitter per frame, camera moved" + (animated ? ", one frame later" : "");
     return checks;

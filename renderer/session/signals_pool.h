@@ -7,8 +7,8 @@
 
 namespace lumi {
 
-/// Signals to trace into. What nobody holds any more is lent again, so that a frame allocates nothing. Others may let go
-/// of them on any thread, also after the pool is gone: the lock orders what they read before what is written next.
+/// Signals to trace into. What nobody holds any more is lent again, so that a frame allocates nothing. Others may let
+/// go of them on any thread, also after the pool is gone: the lock orders what they read before what is written next.
 class SignalsPool {
 public:
     std::shared_ptr<Signals> take() {

@@ -41,7 +41,8 @@ const StateLog::Run& StateLog::runOf(size_t index) const {
     assert(index < size());
     const uint64_t number = index + forgotten_;
     return *(std::upper_bound(runs_.begin(), runs_.end(), number,
-                              [](uint64_t wanted, const Run& run) { return wanted < run.number; }) - 1);
+                              [](uint64_t wanted, const Run& run) { return wanted < run.number; }) -
+             1);
 }
 
 StateLog::Entry StateLog::entry(size_t index) const {
@@ -85,9 +86,10 @@ void StateLog::add(Entry entry) {
     run.start = run.number;
     if (!empty()) {
         const Entry before = last();
-        nlohmann::json set = run.head.document == before.document
-                       ? nlohmann::json::object()
-                       : stateValues(Document::difference(*before.document, *run.head.document), *run.head.document, false);
+        nlohmann::json set =
+            run.head.document == before.document
+                ? nlohmann::json::object()
+                : stateValues(Document::difference(*before.document, *run.head.document), *run.head.document, false);
         if (extend(runs_.back(), before, run.head, set)) return;
         if (!run.head.cut) run.start = run.head.historyDropped ? run.number - 1 : startOf(size() - 1) + forgotten_;
         run.clocks = clocksOf(before, run.head);
@@ -146,7 +148,8 @@ nlohmann::json StateLog::framesFrom(uint64_t first) const {
         const bool whole = run.number > first;
         nlohmann::json told = nlohmann::json::object();
         if (whole && run.set) told["set"] = *run.set;
-        const FrameNumber from = whole ? run.head.frame : run.head.frame + static_cast<FrameNumber>(first + 1 - run.number);
+        const FrameNumber from =
+            whole ? run.head.frame : run.head.frame + static_cast<FrameNumber>(first + 1 - run.number);
         if (run.moves) {
             const Clock& clock = run.clocks.front();
             told["last"] = run.lastFrame();
@@ -163,15 +166,16 @@ std::string StateLog::json(const nlohmann::json& output) const {
     const size_t present = size() - 1, first = startOf(present);
     const Entry begin = entry(first);
     const nlohmann::json start = stateValues(begin.document->changedValues(), *begin.document, true);
-    const nlohmann::json state = {{"format", kFormat},
-                                  {"version", kVersion},
-                                  {"scene", {{"name", scene_.name}, {"digest", scene_.digest}}},
-                                  {"isa", isaName(activeIsa())},
-                                  {"start", {{"frame", begin.frame}, {"set", start}}},
-                                  {"frames", framesFrom(first + forgotten_)},
-                                  {"frame", entry(present).frame},
-                                  {"exposure", entry(present).document->view(output.value("view", 0)).display.exposureEv},
-                                  {"output", output}};
+    const nlohmann::json state = {
+        {"format", kFormat},
+        {"version", kVersion},
+        {"scene", {{"name", scene_.name}, {"digest", scene_.digest}}},
+        {"isa", isaName(activeIsa())},
+        {"start", {{"frame", begin.frame}, {"set", start}}},
+        {"frames", framesFrom(first + forgotten_)},
+        {"frame", entry(present).frame},
+        {"exposure", entry(present).document->view(output.value("view", 0)).display.exposureEv},
+        {"output", output}};
     return jsonText(state);
 }
 

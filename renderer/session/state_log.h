@@ -53,13 +53,13 @@ public:
 private:
     /// Consecutive frames: the first as told by `document`, the others equal to it or, with clocks, but for the time.
     struct Run {
-        Entry head;              ///< the first frame
-        uint64_t number = 0;     ///< of its entry, counted from the first entry ever
+        Entry head;           ///< the first frame
+        uint64_t number = 0;  ///< of its entry, counted from the first entry ever
         uint64_t count = 1;
-        uint64_t start = 0;      ///< startOf(), counted likewise, of the first
-        bool restDropped = false;  ///< historyDropped of the others
-        bool moves = false;        ///< the others' time is what the clocks tell; else all are equal
-        std::vector<Clock> clocks;  ///< all that agree with every frame of the run
+        uint64_t start = 0;                         ///< startOf(), counted likewise, of the first
+        bool restDropped = false;                   ///< historyDropped of the others
+        bool moves = false;                         ///< the others' time is what the clocks tell; else all are equal
+        std::vector<Clock> clocks;                  ///< all that agree with every frame of the run
         std::shared_ptr<const nlohmann::json> set;  ///< what turns the entry before into the first; null: nothing
 
         FrameNumber lastFrame() const { return head.frame + static_cast<FrameNumber>(count) - 1; }

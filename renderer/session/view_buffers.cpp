@@ -59,7 +59,8 @@ BufferView findBuffer(const FrameOutput& frame, const std::string& instance, con
     if (tap == frame.taps.end()) return {};
     const auto module = findModule(instance).make();
     for (const Tap& declared : module->taps())
-        if (declared.name == buffer) return {tap->second.get(), nullptr, declared.channels, declared.colourMap, declared.range};
+        if (declared.name == buffer)
+            return {tap->second.get(), nullptr, declared.channels, declared.colourMap, declared.range};
     return {};
 }
 
@@ -68,7 +69,9 @@ std::shared_ptr<const Image8> drawView(const FrameOutput& frame, const ViewSetti
     BufferView buffer = findBuffer(frame, view.module, view.buffer);
     if (!buffer.image && !buffer.ids) buffer = findBuffer(frame, view.module, "image");
     if (buffer.ids) info = convert(*buffer.ids, view.display, *pixels);
-    else if (buffer.image) info = convert(*buffer.image, buffer.channels.c_str(), buffer.colourMap.c_str(), view.display, *pixels, buffer.range);
+    else if (buffer.image)
+        info = convert(*buffer.image, buffer.channels.c_str(), buffer.colourMap.c_str(), view.display, *pixels,
+                       buffer.range);
     return pixels;
 }
 

@@ -18,7 +18,7 @@ struct BufferView {
     const Image* image = nullptr;
     const IdImage* ids = nullptr;
     std::string channels;
-    std::string colourMap;  ///< what "auto" means for it
+    std::string colourMap;            ///< what "auto" means for it
     std::optional<ValueRange> range;  ///< Tap::range
 };
 BufferView findBuffer(const FrameOutput& frame, const std::string& instance, const std::string& buffer);

@@ -74,7 +74,8 @@ private:
     BenchScene& opened(const std::string& name) {
         if (openName_ != name) {
             open_.reset();
-            open_ = std::make_unique<BenchScene>(loadBenchScene(*benchSceneFile(name), log_, options_.stop), kBenchExtent);
+            open_ =
+                std::make_unique<BenchScene>(loadBenchScene(*benchSceneFile(name), log_, options_.stop), kBenchExtent);
             openName_ = name;
         }
         return *open_;
@@ -116,13 +117,14 @@ private:
     void emitters(const std::string& name) const {
         BenchScene many(emitterScene(true, log_, options_.stop), kBenchExtent);
         BenchScene few(emitterScene(false, log_, options_.stop), kBenchExtent);
-        report(name, "frame/s", 1,
-               timeInTurn([&] { many.render(0, options_.stop); }, [&] { few.render(0, options_.stop); }, options_.stop));
+        report(
+            name, "frame/s", 1,
+            timeInTurn([&] { many.render(0, options_.stop); }, [&] { few.render(0, options_.stop); }, options_.stop));
     }
 
     PairedTimes frameAndBare(BenchScene& scene, const RecordedRays& record) const {
-        return timeInTurn([&] { scene.render(0, options_.stop); },
-                          [&] { replayBare(scene.tracer().embree(), record); }, options_.stop);
+        return timeInTurn([&] { scene.render(0, options_.stop); }, [&] { replayBare(scene.tracer().embree(), record); },
+                          options_.stop);
     }
 
     void load(const std::string& name, const std::string& sceneName) const {
@@ -158,10 +160,11 @@ private:
         const auto result = sceneName.empty() ? comparePathtracerOnCornell(options_.stop)
                                               : comparePathtracer(opened(sceneName).scene(), options_.stop);
         if (!result) return log_.warning(name + ": Embree's pathtracer gave no result");
-        log_.info(fmt::format("{}: same file, size, camera and point light, one sample a pixel, three surfaces a path, no "
-                              "roulette; rays a path {:.2f} of ours, {:.2f} of theirs; ours alone asks for hits "
-                              "without gaps between triangles and draws Owen-scrambled Sobol numbers",
-                              name, result->ownRaysAPath, result->theirRaysAPath));
+        log_.info(
+            fmt::format("{}: same file, size, camera and point light, one sample a pixel, three surfaces a path, no "
+                        "roulette; rays a path {:.2f} of ours, {:.2f} of theirs; ours alone asks for hits "
+                        "without gaps between triangles and draws Owen-scrambled Sobol numbers",
+                        name, result->ownRaysAPath, result->theirRaysAPath));
         output_({name, result->ownMrays, "Mray/s", result->times.median(), result->times.spread(), result->theirMrays});
     }
 
@@ -189,9 +192,11 @@ std::vector<BenchEntry> benchEntries() {
         {"build/", "seconds to make the scene ready for rays"},
         {"memory/", "peak of loading and rendering; the limit is twice what scene and tracer hold"},
         {"metric/", "Mpixel/s on 1920x1080; the limit streams what it reads through memory; with its peak memory"},
-        {"filter/", "frames a second at 1280x720, and of each stage; the limit streams what it reads; with its peak memory"},
+        {"filter/",
+         "frames a second at 1280x720, and of each stage; the limit streams what it reads; with its peak memory"},
         {"size/", "Mpixel/s of the filter without antialiasing at two sizes; the limit is that at 1280x720"},
-        {"mark/", "the project's claims on two cores: ms at 1280x720, and times a pixel at other sizes; --check judges them"}};
+        {"mark/",
+         "the project's claims on two cores: ms at 1280x720, and times a pixel at other sizes; --check judges them"}};
     MessageLog log;
     const BenchOptions options{.filter = "", .program = "/proc/self/exe", .stop = {}};
     const Bench bench(options, log, {});

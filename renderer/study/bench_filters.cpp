@@ -120,7 +120,8 @@ void FilterBench::run(const std::string& id, const BenchOutput& output) {
     const double limit = 1000 / times.limit.median();
     output({"filter/" + id, 1000 / times.own.median(), "frame/s", times.own.median(), times.own.spread(), limit});
     for (const auto& [stage, own] : stages)
-        output({"filter/" + id + "/" + stage, 1000 / std::max(own.median(), 1e-6), "frame/s", own.median(), own.spread(), limit});
+        output({"filter/" + id + "/" + stage, 1000 / std::max(own.median(), 1e-6), "frame/s", own.median(),
+                own.spread(), limit});
     const uint64_t most = std::max(held.value_or(0), static_cast<uint64_t>(module.byteCount()));
     output({"memory/filter/" + id, static_cast<double>(most) / kMiB, "MiB", 0, 0, static_cast<double>(bytes) / kMiB});
 }
@@ -143,10 +144,12 @@ std::vector<FilterBench::Sized> FilterBench::timeSizes(const std::string& id, Ru
 
 void FilterBench::runSizes(const std::string& id, const std::string& name, const BenchOutput& output) {
     RunTimes whole;
-    const auto rate = [](Extent2 size, const RunTimes& ms) { return static_cast<double>(size.area()) * 1e-3 / std::max(ms.median(), 1e-6); };
+    const auto rate = [](Extent2 size, const RunTimes& ms) {
+        return static_cast<double>(size.area()) * 1e-3 / std::max(ms.median(), 1e-6);
+    };
     for (const auto& [extent, own, usual] : timeSizes(id, whole))
-        output({fmt::format("{}/{}x{}", name, extent.width, extent.height), rate(extent, own), "Mpixel/s", own.median(), own.spread(),
-                rate(kFilterExtent, usual)});
+        output({fmt::format("{}/{}x{}", name, extent.width, extent.height), rate(extent, own), "Mpixel/s", own.median(),
+                own.spread(), rate(kFilterExtent, usual)});
 }
 
 void FilterBench::runMarks(const std::string& id, const std::string& name, const BenchOutput& output) {
@@ -154,9 +157,12 @@ void FilterBench::runMarks(const std::string& id, const std::string& name, const
     const std::vector<Sized> sizes = timeSizes(id, whole);
     const auto named = [&](Extent2 extent) { return fmt::format("{}/{}x{}", name, extent.width, extent.height); };
     output({named(kFilterExtent), whole.median(), "ms", whole.median(), whole.spread(), kMostMs, true});
-    const auto perPixel = [](Extent2 size, const RunTimes& ms) { return ms.median() / static_cast<double>(size.area()); };
+    const auto perPixel = [](Extent2 size, const RunTimes& ms) {
+        return ms.median() / static_cast<double>(size.area());
+    };
     for (const auto& [extent, own, usual] : sizes)
-        output({named(extent), perPixel(extent, own) / perPixel(kFilterExtent, usual), "of 720p", own.median(), own.spread(), kMostPerPixel, true});
+        output({named(extent), perPixel(extent, own) / perPixel(kFilterExtent, usual), "of 720p", own.median(),
+                own.spread(), kMostPerPixel, true});
 }
 
 }  // namespace lumi

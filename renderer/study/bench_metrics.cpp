@@ -23,8 +23,10 @@ Image noisyImage(float noise) {
         for (int y = static_cast<int>(begin); y < end; ++y)
             for (int x = 0; x < kMetricExtent.width; ++x)
                 for (int c = 0; c < 3; ++c) {
-                    const uint32_t key = hashCombine(static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(c));
-                    const float smooth = 0.4f + 0.3f * static_cast<float>((x / 60 + y / 60) % 2) * (c == 1 ? 0.7f : 1.0f);
+                    const uint32_t key =
+                        hashCombine(static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(c));
+                    const float smooth =
+                        0.4f + 0.3f * static_cast<float>((x / 60 + y / 60) % 2) * (c == 1 ? 0.7f : 1.0f);
                     image.at(c, x, y) = smooth + noise * (unitFloat(key) - 0.5f);
                 }
     });
@@ -80,7 +82,8 @@ std::vector<std::string> benchedMetrics() {
     return ids;
 }
 
-void benchMetric(const std::string& id, const std::string& name, const std::stop_token& stop, const BenchOutput& output) {
+void benchMetric(const std::string& id, const std::string& name, const std::stop_token& stop,
+                 const BenchOutput& output) {
     const MetricRun metric(id);
     MemoryStream stream(metric.bytes());
     const MemoryPeak peak;
@@ -91,7 +94,8 @@ void benchMetric(const std::string& id, const std::string& name, const std::stop
     output({name, megapixels / times.own.median() * 1000, "Mpixel/s", times.own.median(), times.own.spread(),
             megapixels / times.limit.median() * 1000});
     if (!allocated) return;
-    output({"memory/" + name, static_cast<double>(*allocated) / kMiB, "MiB", 0, 0, static_cast<double>(metric.bytes()) / kMiB});
+    output({"memory/" + name, static_cast<double>(*allocated) / kMiB, "MiB", 0, 0,
+            static_cast<double>(metric.bytes()) / kMiB});
 }
 
 }  // namespace lumi

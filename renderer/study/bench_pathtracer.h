@@ -20,8 +20,8 @@ bool hasPathtracer();
 /// On its Cornell box at 512x512; nothing if it gave no result.
 std::optional<PathtracerComparison> comparePathtracerOnCornell(std::stop_token stop);
 
-/// On the triangles of `scene`, written as an OBJ with colours but no textures, from the scene's first camera at 640x360
-/// under a light in the middle of its bounds.
+/// On the triangles of `scene`, written as an OBJ with colours but no textures, from the scene's first camera at
+/// 640x360 under a light in the middle of its bounds.
 std::optional<PathtracerComparison> comparePathtracer(const Scene& scene, std::stop_token stop);
 
 }  // namespace lumi

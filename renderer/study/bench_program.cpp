@@ -55,10 +55,9 @@ ScratchFolder::~ScratchFolder() {
 
 uint64_t peakOfRender(const std::string& program, const fs::path& scene, Extent2 extent) {
     const ScratchFolder folder;
-    const std::string output =
-        outputOf({program, "render", scene.string(), "--module", "none", "--size",
-                  fmt::format("{}x{}", extent.width, extent.height), "--quiet", "--json", "--out",
-                  (folder.path() / "frame.exr").string()});
+    const std::string output = outputOf({program, "render", scene.string(), "--module", "none", "--size",
+                                         fmt::format("{}x{}", extent.width, extent.height), "--quiet", "--json",
+                                         "--out", (folder.path() / "frame.exr").string()});
     const nlohmann::json result = nlohmann::json::parse(output, nullptr, false);
     return result.is_object() ? result.value("peak_memory_bytes", uint64_t(0)) : 0;
 }

@@ -16,8 +16,8 @@ std::optional<std::filesystem::path> benchSceneFile(const std::string& name);
 
 std::shared_ptr<const Scene> loadBenchScene(const std::filesystem::path& file, MessageLog& log, std::stop_token stop);
 
-/// A floor with two boxes under a canopy of 100,352 triangles and a strip of ten: the canopy shines if `many`, else the strip,
-/// with about the light that the canopy would send.
+/// A floor with two boxes under a canopy of 100,352 triangles and a strip of ten: the canopy shines if `many`, else the
+/// strip, with about the light that the canopy would send.
 std::shared_ptr<const Scene> emitterScene(bool many, MessageLog& log, std::stop_token stop);
 
 /// A scene in a tracer, and frames of it at one sample a pixel as its own settings say.

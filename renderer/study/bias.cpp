@@ -8,9 +8,9 @@
 namespace lumi {
 namespace {
 
-/// What the images of all seeds of one frame say: each seed's mean squared error, the squared mean error of all of them,
-/// and of all but one. Over the pixels that are finite in every image and in the reference: a pixel that is missing in one
-/// seed would otherwise count as one without error.
+/// What the images of all seeds of one frame say: each seed's mean squared error, the squared mean error of all of
+/// them, and of all but one. Over the pixels that are finite in every image and in the reference: a pixel that is
+/// missing in one seed would otherwise count as one without error.
 struct FrameErrors {
     std::vector<double> squared;
     double squaredMean = 0;
@@ -56,7 +56,8 @@ FrameErrors errorsOf(const std::vector<Image>& images, const Image& reference) {
             addDifferences(images, double(reference.data()[at]), at, errors);
         }
     }
-    const double count = 3.0 * static_cast<double>(errors.counted);  // none: everything comes out NaN, which is no value
+    // none: everything comes out NaN, which is no value
+    const double count = 3.0 * static_cast<double>(errors.counted);
     errors.squaredMean /= count;
     for (size_t k = 0; k < seeds; ++k) errors.squared[k] /= count, errors.squaredMeanWithout[k] /= count;
     return errors;
@@ -114,7 +115,8 @@ std::vector<StudyBias> separateBiases(const Study& study, const StudyPlan& plan,
             for (const StudyRow* row : rows) images.push_back(readColour(row->image));
             double noise = 0;
             for (const StudyReferenceNote& note : records.references)
-                if (rows.front()->reference.filename() == std::filesystem::path(note.file).filename()) noise = note.floor.at("mse");
+                if (rows.front()->reference.filename() == std::filesystem::path(note.file).filename())
+                    noise = note.floor.at("mse");
             const FrameErrors errors = errorsOf(images, readColour(rows.front()->reference));
             addShare(bias.parts, separateBias(errors.squared, errors.squaredMean, noise), share);
             for (size_t k = 0; k < seeds; ++k) squared[k] += (errors.squared[k] - noise) * share;

@@ -68,10 +68,13 @@ void drawText(Image8& image, const Canvas::Text& text, double scale) {
     const Lettering* font = Lettering::find(text.strong ? Lettering::Weight::Strong : Lettering::Weight::Regular);
     if (!font) return;
     const double width = font->width(text.text, text.size * scale);
-    const double shift = text.align == Canvas::Align::Left ? 0 : text.align == Canvas::Align::Middle ? width / 2 : width;
+    const double shift = text.align == Canvas::Align::Left     ? 0
+                         : text.align == Canvas::Align::Middle ? width / 2
+                                                               : width;
     for (int y = -1; y <= 1 && text.halo; ++y)
         for (int x = -1; x <= 1; ++x)
-            font->draw(image, (text.x + x) * scale - shift, (text.baseline + y) * scale, text.size * scale, text.text, kHalo);
+            font->draw(image, (text.x + x) * scale - shift, (text.baseline + y) * scale, text.size * scale, text.text,
+                       kHalo);
     font->draw(image, text.x * scale - shift, text.baseline * scale, text.size * scale, text.text, text.colour);
 }
 
@@ -79,7 +82,8 @@ void drawText(Image8& image, const Canvas::Text& text, double scale) {
 
 Image8 resampled(const Image8& image, Extent2 extent) {
     Image8 out{extent, std::vector<uint8_t>(4 * static_cast<size_t>(extent.area()))};
-    const std::vector<Cover> columns = coversOf(image.extent.width, extent.width), rows = coversOf(image.extent.height, extent.height);
+    const std::vector<Cover> columns = coversOf(image.extent.width, extent.width),
+                             rows = coversOf(image.extent.height, extent.height);
     for (int y = 0; y < extent.height; ++y)
         for (int x = 0; x < extent.width; ++x) {
             double sum[3] = {0, 0, 0};
@@ -98,27 +102,38 @@ Image8 resampled(const Image8& image, Extent2 extent) {
 
 std::string svgOf(const Canvas& canvas) {
     std::string out = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" width=\"{0:g}\" height=\"{1:g}\" role=\"img\" "
-        "aria-label=\"{2}\" font-family=\"Inter, Helvetica, Arial, sans-serif\">\n<rect width=\"{0:g}\" height=\"{1:g}\" fill=\"#ffffff\"/>\n",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" width=\"{0:g}\" height=\"{1:g}\" "
+        "role=\"img\" "
+        "aria-label=\"{2}\" font-family=\"Inter, Helvetica, Arial, sans-serif\">\n<rect width=\"{0:g}\" "
+        "height=\"{1:g}\" fill=\"#ffffff\"/>\n",
         canvas.width, canvas.height, escapedMarkup(canvas.title));
     for (const Canvas::Picture& picture : canvas.pictures) {
         // Enlarged pixels stay squares: what is between them was never computed.
         const bool enlarged = picture.width > 1.2 * picture.pixels.extent.width;
-        out += fmt::format("<image x=\"{:g}\" y=\"{:g}\" width=\"{:g}\" height=\"{:g}\" preserveAspectRatio=\"none\"{} "
-                           "href=\"data:image/png;base64,{}\"/>\n",
-                           picture.x, picture.y, picture.width, picture.height,
-                           enlarged ? " style=\"image-rendering:pixelated\"" : "", base64(encodePng(picture.pixels)));
+        out += fmt::format(
+            "<image x=\"{:g}\" y=\"{:g}\" width=\"{:g}\" height=\"{:g}\" preserveAspectRatio=\"none\"{} "
+            "href=\"data:image/png;base64,{}\"/>\n",
+            picture.x, picture.y, picture.width, picture.height, enlarged ? " style=\"image-rendering:pixelated\"" : "",
+            base64(encodePng(picture.pixels)));
     }
     for (const Canvas::Outline& box : canvas.outlines)
-        out += fmt::format("<rect x=\"{:g}\" y=\"{:g}\" width=\"{:g}\" height=\"{:g}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:g}\"/>\n",
-                           box.x + box.line / 2, box.y + box.line / 2, box.width - box.line, box.height - box.line,
-                           hexColour(box.colour), box.line);
+        out += fmt::format(
+            "<rect x=\"{:g}\" y=\"{:g}\" width=\"{:g}\" height=\"{:g}\" fill=\"none\" stroke=\"{}\" "
+            "stroke-width=\"{:g}\"/>\n",
+            box.x + box.line / 2, box.y + box.line / 2, box.width - box.line, box.height - box.line,
+            hexColour(box.colour), box.line);
     for (const Canvas::Text& text : canvas.texts) {
-        const char* anchor = text.align == Canvas::Align::Left ? "start" : text.align == Canvas::Align::Middle ? "middle" : "end";
-        out += fmt::format("<text x=\"{:g}\" y=\"{:g}\" font-size=\"{:g}\" text-anchor=\"{}\" fill=\"{}\"{}{}>{}</text>\n", text.x,
-                           text.baseline, text.size, anchor, hexColour(text.colour), text.strong ? " font-weight=\"600\"" : "",
-                           text.halo ? fmt::format(" stroke=\"{}\" stroke-width=\"2.4\" stroke-linejoin=\"round\" paint-order=\"stroke\"", hexColour(kHalo)) : "",
-                           escapedMarkup(text.text));
+        const char* anchor = text.align == Canvas::Align::Left     ? "start"
+                             : text.align == Canvas::Align::Middle ? "middle"
+                                                                   : "end";
+        out += fmt::format(
+            "<text x=\"{:g}\" y=\"{:g}\" font-size=\"{:g}\" text-anchor=\"{}\" fill=\"{}\"{}{}>{}</text>\n", text.x,
+            text.baseline, text.size, anchor, hexColour(text.colour), text.strong ? " font-weight=\"600\"" : "",
+            text.halo
+                ? fmt::format(" stroke=\"{}\" stroke-width=\"2.4\" stroke-linejoin=\"round\" paint-order=\"stroke\"",
+                              hexColour(kHalo))
+                : "",
+            escapedMarkup(text.text));
     }
     return out + "</svg>\n";
 }

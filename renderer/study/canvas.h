@@ -41,8 +41,8 @@ struct Canvas {
 /// Self-contained SVG: pictures as PNG inside at their own resolution, text as text.
 std::string svgOf(const Canvas& canvas);
 
-/// White paper at `scale` pixels a unit. Pixels of enlarged pictures stay squares; shrunken ones are averaged. Without a
-/// font there is no text, and a warning.
+/// White paper at `scale` pixels a unit. Pixels of enlarged pictures stay squares; shrunken ones are averaged. Without
+/// a font there is no text, and a warning.
 Image8 rasterOf(const Canvas& canvas, double scale, MessageLog& log);
 
 /// Averages over the area that each new pixel covers.

@@ -16,7 +16,9 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// The method of an entry that is neither swept nor without a stage.
 std::optional<size_t> methodOf(const Study& study, const StudyPlan& plan, const std::string& entry) {
     for (size_t i = 0; i < plan.methods.size(); ++i)
-        if (study.entries[plan.methods[i].entry].name == entry && plan.methods[i].coordinates.empty() && !plan.methods[i].whole) return i;
+        if (study.entries[plan.methods[i].entry].name == entry && plan.methods[i].coordinates.empty() &&
+            !plan.methods[i].whole)
+            return i;
     return std::nullopt;
 }
 
@@ -48,7 +50,8 @@ Verdict judge(const Study& study, const std::vector<double>& excess) {
     return interval.known() && interval.high <= 0 ? Verdict::Holds : Verdict::WithinNoise;
 }
 
-std::vector<double> excessOf(const StudyCheck& check, const std::vector<double>& own, const std::vector<double>* other) {
+std::vector<double> excessOf(const StudyCheck& check, const std::vector<double>& own,
+                             const std::vector<double>* other) {
     std::vector<double> excess;
     for (size_t i = 0; i < own.size(); ++i) {
         const double beyond = own[i] - check.bound * (other ? (*other)[i] : 1);
@@ -80,7 +83,8 @@ struct Evidence {
 };
 
 /// A quantity of every seed, in the study's order; nothing if the method did not run so.
-std::vector<double> seedValues(const Evidence& evidence, size_t scene, size_t method, int spp, const std::string& quantity) {
+std::vector<double> seedValues(const Evidence& evidence, size_t scene, size_t method, int spp,
+                               const std::string& quantity) {
     if (isTimeQuantity(quantity)) {
         const StudyMeanTime* time = evidence.times.find(scene, method, spp);
         return time ? time->bySeed(quantity) : std::vector<double>{};
@@ -95,7 +99,8 @@ std::vector<double> seedValues(const Evidence& evidence, size_t scene, size_t me
     return any ? values : std::vector<double>{};
 }
 
-/// On the curve through the points, straight in log-log space, and a little beyond its ends (by a quarter of the place).
+/// On the curve through the points, straight in log-log space, and a little beyond its ends (by a quarter of the
+/// place).
 double onCurve(std::vector<std::pair<double, double>> points, double at) {
     std::sort(points.begin(), points.end());
     std::vector<double> x, y;
@@ -109,14 +114,17 @@ double onCurve(std::vector<std::pair<double, double>> points, double at) {
     return y[i] * std::pow(at / x[i], slope);
 }
 
-/// The values of the curve through the others' sample counts, seed by seed, where `check.atEqual` is what the method has.
-std::vector<double> curveValues(const Evidence& evidence, const StudyCheck& check, size_t scene, size_t method, int spp) {
+/// The values of the curve through the others' sample counts, seed by seed, where `check.atEqual` is what the method
+/// has.
+std::vector<double> curveValues(const Evidence& evidence, const StudyCheck& check, size_t scene, size_t method,
+                                int spp) {
     const std::vector<double> places = seedValues(evidence, scene, method, spp, check.atEqual);
     std::vector<std::vector<std::pair<double, double>>> points(places.size());
     for (const std::string& name : check.against) {
         const std::optional<size_t> other = methodOf(evidence.study, evidence.plan, name);
         for (const int count : other ? countsOf(evidence.study, name) : std::vector<int>{}) {
-            const std::vector<double> a = seedValues(evidence, scene, *other, count, check.atEqual), b = seedValues(evidence, scene, *other, count, check.metric);
+            const std::vector<double> a = seedValues(evidence, scene, *other, count, check.atEqual),
+                                      b = seedValues(evidence, scene, *other, count, check.metric);
             for (size_t seed = 0; seed < places.size() && seed < a.size() && seed < b.size(); ++seed)
                 if (std::isfinite(a[seed]) && std::isfinite(b[seed])) points[seed].emplace_back(a[seed], b[seed]);
         }
@@ -127,7 +135,8 @@ std::vector<double> curveValues(const Evidence& evidence, const StudyCheck& chec
 }
 
 /// A claim at equal cost.
-StudyCheckResult resultAtEqual(const Evidence& evidence, const StudyCheck& check, const std::vector<double>& own, size_t method, StudyCheckResult result) {
+StudyCheckResult resultAtEqual(const Evidence& evidence, const StudyCheck& check, const std::vector<double>& own,
+                               size_t method, StudyCheckResult result) {
     for (const std::string& name : check.against) result.against += (result.against.empty() ? "" : ", ") + name;
     const std::vector<double> values = curveValues(evidence, check, result.scene, method, result.spp);
     result.ratio = meanInterval({}, evidence.study.intervals.level);
@@ -144,11 +153,14 @@ StudyCheckResult resultOf(const Evidence& evidence, size_t index, size_t scene, 
     const bool bySeed = check.timed() || !check.atEqual.empty();
     const auto valuesOf = [&](const std::optional<size_t>& method) {
         if (!method) return std::vector<double>{};
-        return bySeed ? seedValues(evidence, scene, *method, spp, check.metric) : unitValues(study, evidence.rows, scene, *method, spp, check.metric);
+        return bySeed ? seedValues(evidence, scene, *method, spp, check.metric)
+                      : unitValues(study, evidence.rows, scene, *method, spp, check.metric);
     };
     const std::optional<size_t> method = methodOf(study, evidence.plan, check.entry);
     const std::vector<double> own = valuesOf(method);
-    StudyCheckResult result{index, scene, spp, "", meanInterval(own, study.intervals.level, intervalMethod(study)), {}, check.bound, Verdict::Unknown};
+    StudyCheckResult result{
+        index,       scene,           spp, "", meanInterval(own, study.intervals.level, intervalMethod(study)), {},
+        check.bound, Verdict::Unknown};
     if (!check.atEqual.empty() && method) return resultAtEqual(evidence, check, own, *method, result);
     if (check.against.empty()) {
         result.verdict = judge(study, excessOf(check, own, nullptr));
@@ -172,7 +184,8 @@ StudyCheckResult resultOf(const Evidence& evidence, size_t index, size_t scene, 
 
 }  // namespace
 
-std::vector<StudyCheckResult> checkClaims(const Study& study, const StudyPlan& plan, const StudyRecords& records, const StudyTimes& times) {
+std::vector<StudyCheckResult> checkClaims(const Study& study, const StudyPlan& plan, const StudyRecords& records,
+                                          const StudyTimes& times) {
     std::vector<StudyCheckResult> results;
     const StudyRowIndex rows(records);
     for (size_t index = 0; index < study.checks.size(); ++index)
@@ -200,9 +213,14 @@ const char* verdictText(StudyCheckResult::Verdict verdict) {
 
 std::string claimText(const Study& study, const StudyCheck& check) {
     if (!check.title.empty()) return check.title;
-    std::string text = fmt::format("{} of {} {} {:g}", titleOf(study, check.metric), check.entry, check.atLeast ? "at least" : "at most", check.bound);
+    std::string text = fmt::format("{} of {} {} {:g}", titleOf(study, check.metric), check.entry,
+                                   check.atLeast ? "at least" : "at most", check.bound);
     for (size_t i = 0; i < check.against.size(); ++i)
-        text += fmt::format("{}{}", i == 0 ? " times that of " : i + 1 == check.against.size() ? " and " : ", ", check.against[i]);
+        text += fmt::format("{}{}",
+                            i == 0                          ? " times that of "
+                            : i + 1 == check.against.size() ? " and "
+                                                            : ", ",
+                            check.against[i]);
     if (!check.atEqual.empty()) text += " at equal " + titleOf(study, check.atEqual);
     return text + (check.onAverage ? ", on average over the scenes" : "");
 }

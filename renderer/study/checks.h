@@ -23,13 +23,15 @@ struct StudyCheckResult {
     bool asClaimed() const { return verdict == Verdict::Holds || verdict == Verdict::WithinNoise; }
 };
 
-/// A result for each scene (or the mean over all) and each sample count that the claim's entry runs with. Holds: as claimed,
-/// and the interval of the units' differences to the bound tells so. WithinNoise: as claimed, but the interval does not tell
-/// it from the contrary. Fails: not as claimed, and the interval tells so. FailsWithinNoise: the means are not as claimed,
-/// but the interval does not tell. Unknown: a unit has no value, or one of those to compare with did not run at this count.
-/// A claim about times, or at equal cost, is judged seed by seed; against several entries at equal cost these are one curve,
-/// straight between its points in log-log space; more than a quarter out of its range there is no value.
-std::vector<StudyCheckResult> checkClaims(const Study& study, const StudyPlan& plan, const StudyRecords& records, const StudyTimes& times);
+/// A result for each scene (or the mean over all) and each sample count that the claim's entry runs with. Holds: as
+/// claimed, and the interval of the units' differences to the bound tells so. WithinNoise: as claimed, but the interval
+/// does not tell it from the contrary. Fails: not as claimed, and the interval tells so. FailsWithinNoise: the means
+/// are not as claimed, but the interval does not tell. Unknown: a unit has no value, or one of those to compare with
+/// did not run at this count. A claim about times, or at equal cost, is judged seed by seed; against several entries at
+/// equal cost these are one curve, straight between its points in log-log space; more than a quarter out of its range
+/// there is no value.
+std::vector<StudyCheckResult> checkClaims(const Study& study, const StudyPlan& plan, const StudyRecords& records,
+                                          const StudyTimes& times);
 
 /// "holds", "holds within the noise", "fails within the noise", "fails", "unknown".
 const char* verdictText(StudyCheckResult::Verdict verdict);

@@ -55,8 +55,8 @@ std::string titleOf(const Study& study, const StudyMethod& method) {
     return study.entries[method.entry].name + (values.empty() ? "" : " [" + values + "]");
 }
 
-/// What the reference's own noise adds to the metric over the picture, where that can be taken off. It is known as a mean
-/// over the picture only, not of its parts.
+/// What the reference's own noise adds to the metric over the picture, where that can be taken off. It is known as a
+/// mean over the picture only, not of its parts.
 std::optional<double> floorOf(const StudyReferenceNote& note, const std::string& metric) {
     if (!isSquaredError(metric)) return std::nullopt;
     const auto found = note.floor.find(metric);
@@ -64,8 +64,8 @@ std::optional<double> floorOf(const StudyReferenceNote& note, const std::string&
 }
 
 /// The value over the picture, less the reference's own error, and in each crop of one image; its map if asked for.
-void measureImage(const Metric& metric, ImagePair pair, const std::vector<CropBox>& boxes, std::optional<double> floor, FigureColumn& column,
-                  Image* map) {
+void measureImage(const Metric& metric, ImagePair pair, const std::vector<CropBox>& boxes, std::optional<double> floor,
+                  FigureColumn& column, Image* map) {
     pair.prepare();
     Measurement whole = metric.measure(pair, map != nullptr);
     column.whole.push_back(floor ? withoutReferenceNoise(metric.id, whole.value, *floor) : whole.value);
@@ -81,7 +81,9 @@ void measureImage(const Metric& metric, ImagePair pair, const std::vector<CropBo
 }  // namespace
 
 CropBox cropBox(const StudyFigure::Crop& crop, Extent2 extent) {
-    const auto begin = [](double share, int size) { return std::min(static_cast<int>(std::lround(share * size)), size - 1); };
+    const auto begin = [](double share, int size) {
+        return std::min(static_cast<int>(std::lround(share * size)), size - 1);
+    };
     CropBox box{begin(crop.x, extent.width), begin(crop.y, extent.height), 0, 0};
     box.width = std::clamp(static_cast<int>(std::lround(crop.width * extent.width)), 1, extent.width - box.x);
     box.height = std::clamp(static_cast<int>(std::lround(crop.height * extent.height)), 1, extent.height - box.y);
@@ -97,9 +99,15 @@ Image8 cropped(const Image8& image, const CropBox& box) {
     return part;
 }
 
-FigureContent figureContent(const Study& study, const StudyPlan& plan, const StudyRecords& records, const StudyFigure& figure) {
+FigureContent figureContent(const Study& study, const StudyPlan& plan, const StudyRecords& records,
+                            const StudyFigure& figure) {
     FigureContent content{figure.scene.empty() ? study.scenes.front().name : figure.scene,
-                          figure.frame < 0 ? study.frames.measure.back() : figure.frame, figure.spp, {}, {}, {}, 1};
+                          figure.frame < 0 ? study.frames.measure.back() : figure.frame,
+                          figure.spp,
+                          {},
+                          {},
+                          {},
+                          1};
     std::map<size_t, std::vector<const StudyRow*>> rows;  // by method
     for (const StudyRow& row : records.rows)
         if (content.spp == 0 || (figure.spp == 0 && row.spp < content.spp)) content.spp = row.spp;
@@ -118,17 +126,25 @@ FigureContent figureContent(const Study& study, const StudyPlan& plan, const Stu
         for (const StudyReferenceNote& note : records.references)
             if (rows[method].front()->reference.filename() == std::filesystem::path(note.file).filename())
                 colours.exposureEv = note.exposureEv, floor = floorOf(note, figure.metric);
-        if (isSquaredError(figure.metric)) content.ownError = floor ? FigureContent::OwnError::TakenOff : FigureContent::OwnError::Left;
+        if (isSquaredError(figure.metric))
+            content.ownError = floor ? FigureContent::OwnError::TakenOff : FigureContent::OwnError::Left;
         if (content.columns.empty()) {
             content.reference = shown(reference, "RGB", colours);
-            for (const StudyFigure::Crop& crop : figure.crops) content.boxes.push_back(cropBox(crop, reference.extent()));
+            for (const StudyFigure::Crop& crop : figure.crops)
+                content.boxes.push_back(cropBox(crop, reference.extent()));
         }
-        FigureColumn column{titleOf(study, plan.methods[method]), method, {}, {}, {}, std::vector<std::vector<double>>(content.boxes.size())};
+        FigureColumn column{titleOf(study, plan.methods[method]),
+                            method,
+                            {},
+                            {},
+                            {},
+                            std::vector<std::vector<double>>(content.boxes.size())};
         for (const StudyRow* row : rows[method]) {
             const Image image = readColour(row->image);
             const bool first = row == rows[method].front();
             if (first) column.picture = shown(image, "RGB", colours), errors.emplace_back();
-            measureImage(metric, {image, reference, {}, colours.exposureEv, study.metricSettings}, content.boxes, floor, column, first ? &errors.back() : nullptr);
+            measureImage(metric, {image, reference, {}, colours.exposureEv, study.metricSettings}, content.boxes, floor,
+                         column, first ? &errors.back() : nullptr);
         }
         content.columns.push_back(std::move(column));
     }

@@ -18,8 +18,8 @@ Image8 cropped(const Image8& image, const CropBox& box);
 struct FigureColumn {
     std::string title;
     size_t method = 0;
-    Image8 picture, map;                  ///< of the first seed, whole
-    std::vector<double> whole;            ///< the metric over the picture, a seed each; see FigureContent::ownError
+    Image8 picture, map;                     ///< of the first seed, whole
+    std::vector<double> whole;               ///< the metric over the picture, a seed each; see FigureContent::ownError
     std::vector<std::vector<double>> crops;  ///< within each crop, a seed each, as measured
 };
 
@@ -31,11 +31,13 @@ struct FigureContent {
     std::vector<CropBox> boxes;
     std::vector<FigureColumn> columns;  ///< the input first
     float mapHigh = 1;                  ///< of the colour bar, which begins at 0
-    /// What became of the reference's own error in the values over the picture. Apart: no part of the metric that could be told.
+    /// What became of the reference's own error in the values over the picture. Apart: no part of the metric that could
+    /// be told.
     enum class OwnError { Apart, TakenOff, Left } ownError = OwnError::Apart;
 };
 
 /// What a figure shows; no columns if the study has no such images (a scene that was left out).
-FigureContent figureContent(const Study& study, const StudyPlan& plan, const StudyRecords& records, const StudyFigure& figure);
+FigureContent figureContent(const Study& study, const StudyPlan& plan, const StudyRecords& records,
+                            const StudyFigure& figure);
 
 }  // namespace lumi

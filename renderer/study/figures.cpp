@@ -21,7 +21,8 @@ constexpr double kTextSize = 12.5, kTitleSize = 13.5;
 constexpr double kWidestPicture = 900, kPngScale = 2;
 constexpr Colour8 kSoft{93, 97, 103};
 /// Of the crops, told apart on any picture and by the colour-blind [Okabe & Ito 2008].
-constexpr Colour8 kCropColours[] = {{230, 159, 0}, {0, 158, 115}, {86, 180, 233}, {204, 121, 167}, {213, 94, 0}, {0, 114, 178}};
+constexpr Colour8 kCropColours[] = {{230, 159, 0},   {0, 158, 115}, {86, 180, 233},
+                                    {204, 121, 167}, {213, 94, 0},  {0, 114, 178}};
 
 /// As much of a text as fits, by Inter's mean width of a letter.
 std::string fitted(const std::string& text, double width, double size) {
@@ -38,10 +39,12 @@ struct Values {
 Values valuesOf(const Study& study, const std::vector<std::vector<double>>& values, bool higher) {
     Values result;
     const IntervalMethod method = intervalMethod(study);
-    for (const std::vector<double>& own : values) result.intervals.push_back(meanInterval(own, study.intervals.level, method));
+    for (const std::vector<double>& own : values)
+        result.intervals.push_back(meanInterval(own, study.intervals.level, method));
     const std::vector<Rank> ranks = rankMethods(values, higher, study.intervals.level, method);
     for (size_t i = 0; i < values.size(); ++i)
-        result.best.push_back(values.size() > 1 && result.intervals[i].known() && ranks[i].certain() && ranks[i].best == 1);
+        result.best.push_back(values.size() > 1 && result.intervals[i].known() && ranks[i].certain() &&
+                              ranks[i].best == 1);
     return result;
 }
 
@@ -69,36 +72,41 @@ Layout layOut(const FigureContent& content) {
     return layout;
 }
 
-void addPicture(const StudyFigure& figure, const Study& study, const FigureContent& content, const Layout& layout, Canvas& canvas) {
+void addPicture(const StudyFigure& figure, const Study& study, const FigureContent& content, const Layout& layout,
+                Canvas& canvas) {
     const double top = kMargin + kHeader, sx = layout.pictureWidth / content.reference.extent.width;
     canvas.texts.push_back({kMargin, kMargin + 14, content.scene, kTitleSize, true});
-    canvas.texts.push_back({kMargin, kMargin + 30, fmt::format("frame {}, {} spp; shown: reference, {} spp", content.frame, content.spp, study.reference.spp),
-                            kTextSize, false, Canvas::Align::Left, kSoft});
+    canvas.texts.push_back(
+        {kMargin, kMargin + 30,
+         fmt::format("frame {}, {} spp; shown: reference, {} spp", content.frame, content.spp, study.reference.spp),
+         kTextSize, false, Canvas::Align::Left, kSoft});
     canvas.pictures.push_back({kMargin, top, layout.pictureWidth, layout.pictureHeight, content.reference});
     for (size_t i = 0; i < content.boxes.size(); ++i) {
         const CropBox& box = content.boxes[i];
         canvas.outlines.push_back({kMargin + box.x * sx - kLine, top + box.y * sx - kLine, box.width * sx + 2 * kLine,
                                    box.height * sx + 2 * kLine, kCropColours[i], kLine});
         if (!figure.crops[i].name.empty())
-            canvas.texts.push_back({kMargin + box.x * sx - kLine, top + box.y * sx - kLine - 4, figure.crops[i].name, kTextSize, true,
-                                    Canvas::Align::Left, kCropColours[i], true});
+            canvas.texts.push_back({kMargin + box.x * sx - kLine, top + box.y * sx - kLine - 4, figure.crops[i].name,
+                                    kTextSize, true, Canvas::Align::Left, kCropColours[i], true});
     }
 }
 
 void addColumn(const FigureContent& content, const FigureColumn& column, size_t index, const Layout& layout,
                const std::vector<Values>& values, Canvas& canvas) {
     const double x = layout.left + double(index) * (kInset + kGap), middle = x + kInset / 2;
-    canvas.texts.push_back({middle, kMargin + 14, fitted(column.title, kInset, kTitleSize), kTitleSize, true, Canvas::Align::Middle});
+    canvas.texts.push_back(
+        {middle, kMargin + 14, fitted(column.title, kInset, kTitleSize), kTitleSize, true, Canvas::Align::Middle});
     const Values& whole = values.back();
-    canvas.texts.push_back({middle, kMargin + 30, plainText(numberText(whole.intervals[index])), kTextSize, whole.best[index],
-                            Canvas::Align::Middle, kSoft});
+    canvas.texts.push_back({middle, kMargin + 30, plainText(numberText(whole.intervals[index])), kTextSize,
+                            whole.best[index], Canvas::Align::Middle, kSoft});
     for (size_t i = 0; i < content.boxes.size(); ++i) {
         const double top = layout.rowTop[i], height = layout.insetHeight[i];
         canvas.pictures.push_back({x, top, kInset, height, cropped(column.picture, content.boxes[i])});
         canvas.outlines.push_back({x, top, kInset, height, kCropColours[i], kLine});
         canvas.pictures.push_back({x, top + height + kGap, kInset, height, cropped(column.map, content.boxes[i])});
-        canvas.texts.push_back({middle, top + 2 * height + kGap + 13.5, plainText(numberText(values[i].intervals[index])), kTextSize,
-                                values[i].best[index], Canvas::Align::Middle});
+        canvas.texts.push_back({middle, top + 2 * height + kGap + 13.5,
+                                plainText(numberText(values[i].intervals[index])), kTextSize, values[i].best[index],
+                                Canvas::Align::Middle});
     }
 }
 
@@ -119,48 +127,58 @@ Image8 barOf(const Metric& metric) {
 void addReference(const FigureContent& content, const Layout& layout, const Metric& metric, Canvas& canvas) {
     const double x = layout.left + double(content.columns.size()) * (kInset + kGap), middle = x + kInset / 2;
     canvas.texts.push_back({middle, kMargin + 14, "Reference", kTitleSize, true, Canvas::Align::Middle});
-    canvas.texts.push_back({middle, kMargin + 30, std::string(metric.title) + (metric.higherIsBetter ? " ↑" : " ↓"), kTextSize, false,
-                            Canvas::Align::Middle, kSoft});
+    canvas.texts.push_back({middle, kMargin + 30, std::string(metric.title) + (metric.higherIsBetter ? " ↑" : " ↓"),
+                            kTextSize, false, Canvas::Align::Middle, kSoft});
     for (size_t i = 0; i < content.boxes.size(); ++i) {
-        canvas.pictures.push_back({x, layout.rowTop[i], kInset, layout.insetHeight[i], cropped(content.reference, content.boxes[i])});
+        canvas.pictures.push_back(
+            {x, layout.rowTop[i], kInset, layout.insetHeight[i], cropped(content.reference, content.boxes[i])});
         canvas.outlines.push_back({x, layout.rowTop[i], kInset, layout.insetHeight[i], kCropColours[i], kLine});
     }
     const double top = layout.rowTop[0] + layout.insetHeight[0] + kGap;
     canvas.texts.push_back({x, top + 12, metric.title, kTextSize, false, Canvas::Align::Left, kSoft});
     canvas.pictures.push_back({x, top + 18, kInset, 8, barOf(metric)});
     canvas.texts.push_back({x, top + 40, "0", kTextSize, false, Canvas::Align::Left, kSoft});
-    canvas.texts.push_back({x + kInset, top + 40, fmt::format("{:.3g}", content.mapHigh), kTextSize, false, Canvas::Align::Right, kSoft});
+    canvas.texts.push_back(
+        {x + kInset, top + 40, fmt::format("{:.3g}", content.mapHigh), kTextSize, false, Canvas::Align::Right, kSoft});
 }
 
-std::string captionOf(const Study& study, const StudyFigure& figure, const FigureContent& content, const Metric& metric) {
-    std::string text = fmt::format("{}, frame {}, {} spp: the reference ({} spp) with its crops, and each crop above its map of {}.",
-                                   content.scene, content.frame, content.spp, study.reference.spp, metric.title);
+std::string captionOf(const Study& study, const StudyFigure& figure, const FigureContent& content,
+                      const Metric& metric) {
+    std::string text =
+        fmt::format("{}, frame {}, {} spp: the reference ({} spp) with its crops, and each crop above its map of {}.",
+                    content.scene, content.frame, content.spp, study.reference.spp, metric.title);
     text += fmt::format(" Numbers are {} within the crop, those in the head over the whole picture", metric.title);
-    if (content.ownError == FigureContent::OwnError::TakenOff) text += ", without the reference's own error, which stays in those of the crops";
+    if (content.ownError == FigureContent::OwnError::TakenOff)
+        text += ", without the reference's own error, which stays in those of the crops";
     if (content.ownError == FigureContent::OwnError::Left) text += ", all with the reference's own error in them";
     if (study.seeds.size() < 2) return text + "; one seed, so nothing is known of their noise.";
-    return text + fmt::format(": means over {} seeds with the half-width of the {:g}% interval, pictures are those of seed {}. The best is bold "
-                              "where the intervals tell it from all others.",
-                              study.seeds.size(), 100 * study.intervals.level, study.seeds.front()) +
+    return text +
+           fmt::format(
+               ": means over {} seeds with the half-width of the {:g}% interval, pictures are those of seed {}. The "
+               "best is bold "
+               "where the intervals tell it from all others.",
+               study.seeds.size(), 100 * study.intervals.level, study.seeds.front()) +
            (figure.crops.size() > 1 ? " Colours mark the crops." : "");
 }
 
 }  // namespace
 
-std::vector<DrawnFigure> drawFigures(const Study& study, const StudyPlan& plan, const StudyRecords& records, MessageLog& log) {
+std::vector<DrawnFigure> drawFigures(const Study& study, const StudyPlan& plan, const StudyRecords& records,
+                                     MessageLog& log) {
     std::vector<DrawnFigure> figures;
     for (const StudyFigure& figure : study.figures) {
         const FigureContent content = figureContent(study, plan, records, figure);
         if (content.columns.empty()) {
-            log.warning(fmt::format("figure \"{}\" is left out: the study has no images of {}, frame {}, {} spp", figure.name, content.scene,
-                                    content.frame, content.spp));
+            log.warning(fmt::format("figure \"{}\" is left out: the study has no images of {}, frame {}, {} spp",
+                                    figure.name, content.scene, content.frame, content.spp));
             continue;
         }
         const Metric& metric = findMetric(figure.metric);
         std::vector<Values> values;  // of each crop, then of the whole picture
         for (size_t i = 0; i <= content.boxes.size(); ++i) {
             std::vector<std::vector<double>> columns;
-            for (const FigureColumn& column : content.columns) columns.push_back(i < content.boxes.size() ? column.crops[i] : column.whole);
+            for (const FigureColumn& column : content.columns)
+                columns.push_back(i < content.boxes.size() ? column.crops[i] : column.whole);
             values.push_back(valuesOf(study, columns, metric.higherIsBetter));
         }
         const Layout layout = layOut(content);
@@ -168,7 +186,8 @@ std::vector<DrawnFigure> drawFigures(const Study& study, const StudyPlan& plan, 
         Canvas canvas;
         canvas.width = layout.width, canvas.height = layout.height, canvas.title = drawn.caption;
         addPicture(figure, study, content, layout, canvas);
-        for (size_t i = 0; i < content.columns.size(); ++i) addColumn(content, content.columns[i], i, layout, values, canvas);
+        for (size_t i = 0; i < content.columns.size(); ++i)
+            addColumn(content, content.columns[i], i, layout, values, canvas);
         addReference(content, layout, metric, canvas);
         drawn.svg = svgOf(canvas);
         drawn.png = encodePng(rasterOf(canvas, kPngScale, log));

@@ -8,8 +8,8 @@
 
 namespace lumi {
 
-/// An inset strip of a finished study, drawn: the reference with its crops marked, and each crop as the input, the methods
-/// and the reference show it, above its error map and the metric's value in it.
+/// An inset strip of a finished study, drawn: the reference with its crops marked, and each crop as the input, the
+/// methods and the reference show it, above its error map and the metric's value in it.
 struct DrawnFigure {
     std::string name;     ///< of its files, without extension
     std::string caption;  ///< what it shows, in words
@@ -18,8 +18,10 @@ struct DrawnFigure {
     std::string svg;
 };
 
-/// The figures of the study, in its order; those of scenes that were left out are left out too. Pictures are those of the
-/// first seed; values are means over the seeds, the best in bold only where their intervals tell it from all others.
-std::vector<DrawnFigure> drawFigures(const Study& study, const StudyPlan& plan, const StudyRecords& records, MessageLog& log);
+/// The figures of the study, in its order; those of scenes that were left out are left out too. Pictures are those of
+/// the first seed; values are means over the seeds, the best in bold only where their intervals tell it from all
+/// others.
+std::vector<DrawnFigure> drawFigures(const Study& study, const StudyPlan& plan, const StudyRecords& records,
+                                     MessageLog& log);
 
 }  // namespace lumi

@@ -47,7 +47,8 @@ std::vector<StudyListing> listStudies() {
         for (const fs::directory_entry& file : fs::directory_iterator(folder, ignored)) {
             const fs::path& path = file.path();
             const std::string name = path.stem().string();
-            const bool known = std::any_of(studies.begin(), studies.end(), [&](const auto& s) { return s.name == name; });
+            const bool known =
+                std::any_of(studies.begin(), studies.end(), [&](const auto& s) { return s.name == name; });
             if (known || path.extension() != ".json" || path.stem().extension() == ".schema" || !isFile(path)) continue;
             StudyListing study{name, sceneFileTitle(path), path, {}};
             if (study.title.empty()) study.title = name;
@@ -96,8 +97,8 @@ fs::path findStudyScene(const Study& study, const StudyScene& scene) {
 
 bool definesImage(const std::string& id) {
     static constexpr const char* kPrefixes[] = {"material.", "light.", "environment.", "scene.", "camera.", "view."};
-    static constexpr const char* kIds[] = {"time", "path.max-depth", "path.max-diffuse-depth", "path.max-specular-depth",
-                                           "path.multiple-scattering"};
+    static constexpr const char* kIds[] = {"time", "path.max-depth", "path.max-diffuse-depth",
+                                           "path.max-specular-depth", "path.multiple-scattering"};
     if (id == "camera.jitter") return false;
     return std::any_of(std::begin(kIds), std::end(kIds), [&](const char* known) { return id == known; }) ||
            std::any_of(std::begin(kPrefixes), std::end(kPrefixes), [&](const char* p) { return id.starts_with(p); });

@@ -37,7 +37,8 @@ Document baseDocument(const JobContext& context) {
         setValue(document, "render.height", std::to_string(study.size.height), study.path.string());
     }
     // The engine takes a step that is longer than the document's own for a jump, which drops every history.
-    if (study.frames.fps > 0) setValue(document, "render.fps", fmt::format("{}", study.frames.fps), study.path.string());
+    if (study.frames.fps > 0)
+        setValue(document, "render.fps", fmt::format("{}", study.frames.fps), study.path.string());
     setValue(document, "view.layout", "single", study.path.string());
     setValue(document, "view.0.buffer", "image", study.path.string());
     return document;
@@ -94,8 +95,13 @@ std::vector<RunningMethod> methodsOf(const JobContext& context, const StudyJob& 
 }
 
 FrameRunner::FrameRunner(const JobContext& context, const StudyJob& job, std::vector<RunningMethod> methods)
-    : context_(context), methods_(std::move(methods)), document_(jobDocument(context, job, methods_)),
-      problem_(problemDocument(context, job)), earlier_(problem_), engine_(context.log), next_(context.study.frames.begin) {}
+    : context_(context),
+      methods_(std::move(methods)),
+      document_(jobDocument(context, job, methods_)),
+      problem_(problemDocument(context, job)),
+      earlier_(problem_),
+      engine_(context.log),
+      next_(context.study.frames.begin) {}
 
 std::string checkJobValues(const JobContext& context, const StudyJob& job) {
     std::vector<RunningMethod> methods;

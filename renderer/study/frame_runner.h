@@ -17,8 +17,8 @@ struct RunningMethod {
 /// The methods of a measuring job, with what tuning chose.
 std::vector<RunningMethod> methodsOf(const JobContext& context, const StudyJob& job);
 
-/// Does the scene take every value that the job sets? Throws as FrameRunner does; nothing is drawn. Returns the contents of the
-/// images that the values name, as digests.
+/// Does the scene take every value that the job sets? Throws as FrameRunner does; nothing is drawn. Returns the
+/// contents of the images that the values name, as digests.
 std::string checkJobValues(const JobContext& context, const StudyJob& job);
 
 /// Drives the frame engine over the study's frames, from an empty history on.

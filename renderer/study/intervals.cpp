@@ -54,7 +54,8 @@ void bootstrap(std::span<const double> values, double level, Interval& interval)
     std::sort(means.begin(), means.end());
     const auto below = std::lower_bound(means.begin(), means.end(), interval.mean) - means.begin();
     const auto upTo = std::upper_bound(means.begin(), means.end(), interval.mean) - means.begin();
-    const double share = std::clamp(0.5 * static_cast<double>(below + upTo) / kResamples, 0.5 / kResamples, 1 - 0.5 / kResamples);
+    const double share =
+        std::clamp(0.5 * static_cast<double>(below + upTo) / kResamples, 0.5 / kResamples, 1 - 0.5 / kResamples);
     const double bias = normalQuantile(1 - share);
     const double a = acceleration(values, interval.mean);
     const auto end = [&](double tail) {
@@ -67,9 +68,11 @@ void bootstrap(std::span<const double> values, double level, Interval& interval)
     interval.high = end(1 - (1 - level) / 2);
 }
 
-/// Are there enough values for resamples to say something at this level? With n of them every mean of a resample has one sign
-/// wherever all values have, and noise alone gives them one in 2^(1-n) of all cases.
-bool canResample(size_t count, double level) { return std::ldexp(1.0, 1 - static_cast<int>(std::min<size_t>(count, 64))) < 1 - level; }
+/// Are there enough values for resamples to say something at this level? With n of them every mean of a resample has
+/// one sign wherever all values have, and noise alone gives them one in 2^(1-n) of all cases.
+bool canResample(size_t count, double level) {
+    return std::ldexp(1.0, 1 - static_cast<int>(std::min<size_t>(count, 64))) < 1 - level;
+}
 
 std::vector<double> finiteOf(std::span<const double> values) {
     std::vector<double> finite;
@@ -97,7 +100,8 @@ Interval meanInterval(std::span<const double> all, double level, IntervalMethod 
     } else if (method == IntervalMethod::Bootstrap && canResample(values.size(), level)) {
         bootstrap(values, level, interval);
     } else {
-        const double half = studentQuantile((1 - level) / 2, static_cast<double>(values.size() - 1)) * interval.standardError;
+        const double half =
+            studentQuantile((1 - level) / 2, static_cast<double>(values.size() - 1)) * interval.standardError;
         interval.low = interval.mean - half;
         interval.high = interval.mean + half;
     }

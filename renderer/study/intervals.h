@@ -21,12 +21,12 @@ enum class IntervalMethod { StudentT, Bootstrap };
 
 /// Mean of independent values with its two-sided interval at `level` (0.95): Student's t, or the bias-corrected and
 /// accelerated bootstrap [Efron 1987] with 4000 resamples from fixed random numbers. With n values of which noise alone
-/// gives all one sign more often than the level allows (2^(1-n) >= 1 - level: fewer than six at 0.95) resamples say nothing,
-/// and the bootstrap's interval is Student's. Values that are not finite are missing ones: they do not count.
+/// gives all one sign more often than the level allows (2^(1-n) >= 1 - level: fewer than six at 0.95) resamples say
+/// nothing, and the bootstrap's interval is Student's. Values that are not finite are missing ones: they do not count.
 Interval meanInterval(std::span<const double> values, double level, IntervalMethod method = IntervalMethod::StudentT);
 
-/// Interval of the mean difference a[i] - b[i] of values that were measured on the same samples. Pairs of which a value is
-/// missing do not count.
+/// Interval of the mean difference a[i] - b[i] of values that were measured on the same samples. Pairs of which a value
+/// is missing do not count.
 Interval pairedInterval(std::span<const double> a, std::span<const double> b, double level,
                         IntervalMethod method = IntervalMethod::StudentT);
 
@@ -36,9 +36,9 @@ struct Rank {
     bool certain() const { return best == worst; }
 };
 
-/// Ranks methods by the paired differences between all pairs; each pair is tested at a level that makes `level` hold for
-/// all of them together [Sidak 1967]. A method that no test tells from another shares its places. Each row of `values`
-/// is one method, measured on the same units; two methods are compared over the units where both have a value.
+/// Ranks methods by the paired differences between all pairs; each pair is tested at a level that makes `level` hold
+/// for all of them together [Sidak 1967]. A method that no test tells from another shares its places. Each row of
+/// `values` is one method, measured on the same units; two methods are compared over the units where both have a value.
 std::vector<Rank> rankMethods(const std::vector<std::vector<double>>& values, bool higherIsBetter, double level,
                               IntervalMethod method = IntervalMethod::StudentT);
 
@@ -54,11 +54,12 @@ struct BiasVariance {
 /// squared mean over the seeds of (image - reference); `referenceNoise`: the reference's own mean squared error.
 BiasVariance separateBias(std::span<const double> squaredErrors, double squaredMeanError, double referenceNoise);
 
-/// Jackknife [Quenouille 1956]: pseudo-values of a statistic that is `all` with all units and `without[k]` without unit k;
-/// meanInterval() of them is the statistic's interval. None for fewer than three units.
+/// Jackknife [Quenouille 1956]: pseudo-values of a statistic that is `all` with all units and `without[k]` without unit
+/// k; meanInterval() of them is the statistic's interval. None for fewer than three units.
 std::vector<double> pseudoValues(double all, std::span<const double> without);
 
-/// Slope of the least-squares line through (log x, log y); NaN with fewer than two different x or a y that is not above 0.
+/// Slope of the least-squares line through (log x, log y); NaN with fewer than two different x or a y that is not above
+/// 0.
 double logLogSlope(std::span<const double> x, std::span<const double> y);
 
 enum class Course { Rising, Falling };

@@ -15,13 +15,15 @@ struct LatexTable {
     std::string text;
 };
 
-/// Results of each scene (and of all together), equal time and equal error of the pairs, what each stage is worth, and the
-/// metrics' definitions. The best is bold only where the intervals tell it from all others. Times are of one machine.
+/// Results of each scene (and of all together), equal time and equal error of the pairs, what each stage is worth, and
+/// the metrics' definitions. The best is bold only where the intervals tell it from all others. Times are of one
+/// machine.
 std::vector<LatexTable> latexTables(const Study& study, const StudyPlan& plan, const StudySummaries& summaries,
                                     const StudyTimes& times);
 
 /// A document that has all of them in it, and the figures (report/document.tex).
-std::string latexDocument(const Study& study, const std::vector<DrawnFigure>& figures, const std::vector<LatexTable>& tables);
+std::string latexDocument(const Study& study, const std::vector<DrawnFigure>& figures,
+                          const std::vector<LatexTable>& tables);
 
 /// Text with every character that means something to LaTeX escaped.
 std::string escapedLatex(const std::string& text);

@@ -47,7 +47,8 @@ std::string latexText(const NumberText& number, bool strong) {
     if (number.mean == "-") return "--";
     std::string body = strong ? "\\mathbf{" + number.mean + "}" : number.mean;
     if (!number.half.empty()) body += " \\pm " + number.half;
-    if (number.exponent != 0) body = (number.half.empty() ? body : "(" + body + ")") + fmt::format(" \\cdot 10^{{{}}}", number.exponent);
+    if (number.exponent != 0)
+        body = (number.half.empty() ? body : "(" + body + ")") + fmt::format(" \\cdot 10^{{{}}}", number.exponent);
     return "$" + body + "$";
 }
 

@@ -11,8 +11,9 @@ struct NumberText {
     int exponent = 0;        ///< both times ten to it
 };
 
-/// Two digits of the half-width, and as many decimals of the mean, but at most six digits of that; without an interval, or
-/// with one of no width, four digits. Very small and very large numbers have an exponent. A mean that is not finite is "-".
+/// Two digits of the half-width, and as many decimals of the mean, but at most six digits of that; without an interval,
+/// or with one of no width, four digits. Very small and very large numbers have an exponent. A mean that is not finite
+/// is "-".
 NumberText numberText(const Interval& interval);
 
 /// "0.1234 ± 0.0012", "(1.23 ± 0.05)·10⁻⁵", "-".

@@ -86,8 +86,8 @@ std::vector<StudyValue> samplingValues(const Study& study, const StudyMethod& me
     return values;
 }
 
-/// Methods on the same samples: the same document values, and the same offset of camera rays where the scene leaves that
-/// to the module.
+/// Methods on the same samples: the same document values, and the same offset of camera rays where the scene leaves
+/// that to the module.
 std::string groupKey(const Study& study, const StudyMethod& method) {
     const auto module = findModule(study.entries[method.entry].module).make();
     return fmt::format("{};{}", static_cast<int>(module->preferredJitter()), textOf(samplingValues(study, method)));
@@ -100,20 +100,23 @@ std::string commonDefinition(const Study& study, const StudyScene& scene, int sp
     text += textOf(scene.set) + textOf(study.set) + "ref " + textOf(study.reference.set);
     const MetricSettings& settings = study.metricSettings;
     if (settings != MetricSettings{}) text += fmt::format("relmse {};", settings.relMseEpsilon);
-    if (const auto& range = settings.flipExposures) text += fmt::format("exposures {} {} {};", range->start, range->stop, range->count);
+    if (const auto& range = settings.flipExposures)
+        text += fmt::format("exposures {} {} {};", range->start, range->stop, range->count);
     if (study.frames.step) text += fmt::format("step {} {}", study.frames.step->frame, textOf(study.frames.step->set));
     return text;
 }
 
 std::string measureDefinition(const Study& study, const StudyPlan& plan, const StudyJob& job) {
-    std::string text = commonDefinition(study, study.scenes[job.scene], job.spp) + fmt::format("seed {};measure ", job.seed);
+    std::string text =
+        commonDefinition(study, study.scenes[job.scene], job.spp) + fmt::format("seed {};measure ", job.seed);
     for (const int64_t frame : study.frames.measure) text += fmt::format("{},", frame);
-    text += fmt::format(";temporal {}..{} from {};", study.frames.temporalBegin, study.frames.temporalEnd, study.frames.temporalMeanFrom);
+    text += fmt::format(";temporal {}..{} from {};", study.frames.temporalBegin, study.frames.temporalEnd,
+                        study.frames.temporalMeanFrom);
     for (const std::string& metric : study.metrics) text += metric + ",";
     for (const std::string& metric : study.temporalMetrics) text += metric + ",";
     for (const StudyStatistic& one : study.statistics)
-        text += fmt::format("{} {}.{} {} {} {} {} {} {}/{},", one.name, one.tap, one.channel, static_cast<int>(one.of), one.value, one.metric, one.referenceSpp,
-                            one.rays, one.over, one.under);
+        text += fmt::format("{} {}.{} {} {} {} {} {} {}/{},", one.name, one.tap, one.channel, static_cast<int>(one.of),
+                            one.value, one.metric, one.referenceSpp, one.rays, one.over, one.under);
     for (const size_t index : job.methods) {
         const StudyMethod& method = plan.methods[index];
         const StudyEntry& entry = study.entries[method.entry];
@@ -127,7 +130,9 @@ std::string measureDefinition(const Study& study, const StudyPlan& plan, const S
 }
 
 /// `spp` values of an entry.
-const std::vector<int>& sppOf(const Study& study, const StudyEntry& entry) { return entry.spp.empty() ? study.spp : entry.spp; }
+const std::vector<int>& sppOf(const Study& study, const StudyEntry& entry) {
+    return entry.spp.empty() ? study.spp : entry.spp;
+}
 
 std::vector<int> allSpp(const Study& study) {
     std::set<int> all;
@@ -214,7 +219,8 @@ bool tracesApart(const Study& study, const StudyMethod& method) {
     for (const StudyAblation& ablation : study.ablations)
         for (const StudyAblation::Stage& stage : ablation.stages)
             if (method.whole && ablation.entry == entry.name && stage.name == method.stage)
-                return std::any_of(stage.set.begin(), stage.set.end(), [&](const StudyValue& value) { return isDocumentId(entry.module, value.id); });
+                return std::any_of(stage.set.begin(), stage.set.end(),
+                                   [&](const StudyValue& value) { return isDocumentId(entry.module, value.id); });
     return false;
 }
 

@@ -28,7 +28,8 @@ std::vector<std::pair<std::string, std::string>> texts(const json& object) {
 }
 
 size_t methodNamed(const StudyPlan& plan, const std::string& name) {
-    const auto found = std::find_if(plan.methods.begin(), plan.methods.end(), [&](const auto& m) { return m.name == name; });
+    const auto found =
+        std::find_if(plan.methods.begin(), plan.methods.end(), [&](const auto& m) { return m.name == name; });
     return static_cast<size_t>(found - plan.methods.begin());
 }
 
@@ -42,9 +43,16 @@ void addChoice(const StudyJob& job, const json& result, StudyRecords& records) {
 void addTimes(const StudyPlan& plan, const StudyJob& job, const json& times, StudyRecords& records) {
     if (!times.is_object() || !times.contains("methods")) return;
     for (const auto& [name, method] : times.at("methods").items()) {
-        StudyTime time{job.scene, methodNamed(plan, name), job.spp, job.seed, number(method.at("trace_ms")),
-                       number(times.at("pose_ms")), number(method.at("run_ms")), number(method.at("rays_per_frame")),
-                       numbers(method.at("stages_ms")), number(times.at("build_ms"))};
+        StudyTime time{job.scene,
+                       methodNamed(plan, name),
+                       job.spp,
+                       job.seed,
+                       number(method.at("trace_ms")),
+                       number(times.at("pose_ms")),
+                       number(method.at("run_ms")),
+                       number(method.at("rays_per_frame")),
+                       numbers(method.at("stages_ms")),
+                       number(times.at("build_ms"))};
         records.times.push_back(std::move(time));
     }
 }
@@ -62,10 +70,17 @@ void StudyRecords::add(const StudyPlan& plan, const StudyJob& job, const json& r
     if (job.kind == StudyJob::Kind::Tune) return addChoice(job, result, *this);
     std::map<int64_t, std::string> files;
     for (const json& reference : result.at("references")) {
-        StudyReferenceNote note{job.scene, reference.at("frame"), reference.at("file"), reference.at("exposure"), numbers(reference.at("floor")),
-                                numbers(reference.at("own")), reference.at("nonfinite_pixels"), numbers(reference.at("details"))};
+        StudyReferenceNote note{job.scene,
+                                reference.at("frame"),
+                                reference.at("file"),
+                                reference.at("exposure"),
+                                numbers(reference.at("floor")),
+                                numbers(reference.at("own")),
+                                reference.at("nonfinite_pixels"),
+                                numbers(reference.at("details"))};
         files[note.frame] = note.file;
-        const bool known = std::any_of(references.begin(), references.end(), [&](const auto& r) { return r.file == note.file; });
+        const bool known =
+            std::any_of(references.begin(), references.end(), [&](const auto& r) { return r.file == note.file; });
         if (!known) references.push_back(std::move(note));
     }
     for (const json& entry : result.at("rows")) {
@@ -81,10 +96,12 @@ void StudyRecords::add(const StudyPlan& plan, const StudyJob& job, const json& r
     }
     for (const json& sequence : result.at("sequences")) {
         StudyRow row;
-        row.scene = job.scene, row.method = methodNamed(plan, sequence.at("method")), row.spp = job.spp, row.seed = job.seed;
+        row.scene = job.scene, row.method = methodNamed(plan, sequence.at("method")), row.spp = job.spp,
+        row.seed = job.seed;
         for (const auto& [metric, value] : sequence.at("metrics").items()) {
             row.metrics[metric] = number(value.at("mean"));
-            if (value.contains("reason") && !value.at("reason").get<std::string>().empty()) row.reasons[metric] = value.at("reason");
+            if (value.contains("reason") && !value.at("reason").get<std::string>().empty())
+                row.reasons[metric] = value.at("reason");
             StudySeries one{row.scene, row.method, row.spp, row.seed, metric, value.at("begin"), {}};
             for (const json& frame : value.at("frames")) one.values.push_back(number(frame));
             series.push_back(std::move(one));

@@ -9,13 +9,14 @@
 
 namespace lumi {
 
-/// One measured image: a row of results.json and results.csv. Sequence rows (frame -1) hold metrics of consecutive frames.
+/// One measured image: a row of results.json and results.csv. Sequence rows (frame -1) hold metrics of consecutive
+/// frames.
 struct StudyRow {
     size_t scene = 0, method = 0;
     int64_t frame = -1;
     int spp = 1, seed = 0;
     std::map<std::string, double> metrics;
-    std::map<std::string, double> corrected;  ///< without the reference's own error, where it can be taken off
+    std::map<std::string, double> corrected;     ///< without the reference's own error, where it can be taken off
     std::map<std::string, std::string> reasons;  ///< why a metric has no value, where it has none
     int64_t nonFinitePixels = 0;
     std::filesystem::path image, reference;  ///< of a frame; where they are
@@ -29,7 +30,7 @@ struct StudySeries {
     size_t scene = 0, method = 0;
     int spp = 1, seed = 0;
     std::string metric;
-    int64_t begin = 0;           ///< frame of the first value
+    int64_t begin = 0;  ///< frame of the first value
     std::vector<double> values;
 };
 
@@ -54,17 +55,19 @@ struct StudyChoice {
         double metric = 0;
     };
     std::vector<Candidate> candidates;
-    std::vector<std::string> atEnds;  ///< parameters of which the first or the last value was chosen: the best may lie beyond it
+    std::vector<std::string>
+        atEnds;  ///< parameters of which the first or the last value was chosen: the best may lie beyond it
 };
 
 /// Median wall-clock times of a method's frames in one job.
 struct StudyTime {
     size_t scene = 0, method = 0;
     int spp = 1, seed = 0;
-    double traceMs = 0, poseMs = 0, runMs = 0;  ///< traceMs: of all signals that the job's methods read; 0 if the method reads none
+    double traceMs = 0, poseMs = 0,
+           runMs = 0;         ///< traceMs: of all signals that the job's methods read; 0 if the method reads none
     double raysPerFrame = 0;  ///< of the signals, if the method reads any, and those that it traced itself
     std::map<std::string, double> stagesMs;  ///< of run()
-    double buildMs = 0;  ///< of what is traced, where things move
+    double buildMs = 0;                      ///< of what is traced, where things move
     double frameMs() const { return poseMs + buildMs + traceMs + runMs; }
 };
 

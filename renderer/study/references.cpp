@@ -39,7 +39,8 @@ std::shared_ptr<const StudyReferenceFrame> StudyReferences::get(const Document& 
     Document problem = document;
     problem.setText("render.seed", std::to_string(kReferenceSeed));
     if (!problem.loadedScene()->isAnimated()) problem.setTime(0);  // one reference serves all frames
-    const std::string key = referenceKey(referenceSpec(problem)) + std::to_string(metricExposure(problem)) + ' ' + std::to_string(spp);
+    const std::string key =
+        referenceKey(referenceSpec(problem)) + std::to_string(metricExposure(problem)) + ' ' + std::to_string(spp);
     for (auto kept = kept_.begin(); kept != kept_.end(); ++kept) {
         if (kept->key != key) continue;
         kept_.splice(kept_.begin(), kept_, kept);
@@ -53,7 +54,8 @@ std::shared_ptr<const StudyReferenceFrame> StudyReferences::get(const Document& 
     return kept_.front().frame;
 }
 
-std::shared_ptr<const Signals> StudyReferences::geometry(const Document& document, const Document& earlier, const Trace& trace) {
+std::shared_ptr<const Signals> StudyReferences::geometry(const Document& document, const Document& earlier,
+                                                         const Trace& trace) {
     Document now = document, before = earlier;
     if (!now.loadedScene()->isAnimated()) now.setTime(0), before.setTime(0);  // one serves all frames
     if (geometryOf_ != now.loadedScene().get()) geometry_.clear(), geometryOf_ = now.loadedScene().get();

@@ -51,16 +51,19 @@ std::string facts(const Study& study, const StudyRecords& records) {
     if (study.size.width > 0) size = fmt::format("{} × {}", study.size.width, study.size.height);
     std::string scenes;
     for (const StudyScene& scene : study.scenes) scenes += (scenes.empty() ? "" : ", ") + scene.name;
-    const std::pair<std::string, std::string> all[] = {{"Preset", study.preset.empty() ? "none" : study.preset},
-                                                       {"Scenes", scenes},
-                                                       {"Image size", size},
-                                                       {"Measured", framesText(study)},
-                                                       {"Samples a pixel", joined(study.spp)},
-                                                       {"Seeds", joined(study.seeds)},
-                                                       {"Reference", fmt::format("{} spp", study.reference.spp)},
-                                                       {"Images measured", std::to_string(std::count_if(records.rows.begin(), records.rows.end(), [](const StudyRow& row) { return row.frame >= 0; }))}};
+    const std::pair<std::string, std::string> all[] = {
+        {"Preset", study.preset.empty() ? "none" : study.preset},
+        {"Scenes", scenes},
+        {"Image size", size},
+        {"Measured", framesText(study)},
+        {"Samples a pixel", joined(study.spp)},
+        {"Seeds", joined(study.seeds)},
+        {"Reference", fmt::format("{} spp", study.reference.spp)},
+        {"Images measured", std::to_string(std::count_if(records.rows.begin(), records.rows.end(),
+                                                         [](const StudyRow& row) { return row.frame >= 0; }))}};
     std::string html;
-    for (const auto& [name, value] : all) html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", name, escapedMarkup(value));
+    for (const auto& [name, value] : all)
+        html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", name, escapedMarkup(value));
     return html;
 }
 
@@ -69,21 +72,30 @@ Json studyData(const Study& study, const StudyPlan& plan) {
     for (const StudyMethod& method : plan.methods) {
         Json set = Json::array();
         for (const StudyValue& value : method.set) set.push_back(value.id + " = " + value.text);
-        methods.push_back({{"name", method.name}, {"entry", study.entries[method.entry].name},
-                           {"module", study.entries[method.entry].module}, {"set", std::move(set)},
-                           {"coordinates", method.coordinates}, {"stage", method.stage}, {"apart", tracesApart(study, method)}});
+        methods.push_back({{"name", method.name},
+                           {"entry", study.entries[method.entry].name},
+                           {"module", study.entries[method.entry].module},
+                           {"set", std::move(set)},
+                           {"coordinates", method.coordinates},
+                           {"stage", method.stage},
+                           {"apart", tracesApart(study, method)}});
     }
     Json axes = Json::array();
     if (study.sweep)
         for (const StudyAxis& axis : study.sweep->axes) axes.push_back({{"id", axis.id}, {"values", axis.values}});
-    return {{"seeds", study.seeds}, {"level", study.intervals.level}, {"frames", framesText(study)},
-            {"axes", std::move(axes)}, {"methods", std::move(methods)}};
+    return {{"seeds", study.seeds},
+            {"level", study.intervals.level},
+            {"frames", framesText(study)},
+            {"axes", std::move(axes)},
+            {"methods", std::move(methods)}};
 }
 
 Json metricData(const Study& study) {
     Json all = Json::object();
     for (const std::string& id : allMetrics(study)) {
-        all[id] = {{"title", titleOf(study, id)}, {"definition", definitionOf(study, id)}, {"higher", higherIsBetter(study, id)},
+        all[id] = {{"title", titleOf(study, id)},
+                   {"definition", definitionOf(study, id)},
+                   {"higher", higherIsBetter(study, id)},
                    {"temporal", findTemporalMetric(id) != nullptr}};
         all[id]["squared"] = !isSquaredError(id) ? Json(false) : Json(id == "rmse" ? "root" : "mean");
     }
@@ -103,22 +115,29 @@ Json seriesData(const Study& study, const StudyPlan& plan, const StudyRecords& r
             const Json interval = intervalJson(meanInterval(seeds, study.intervals.level));
             values.push_back(interval["mean"]), low.push_back(interval["low"]), high.push_back(interval["high"]);
         }
-        list.push_back({{"scene", study.scenes[std::get<0>(key)].name}, {"spp", std::get<1>(key)}, {"metric", std::get<2>(key)},
-                        {"entry", plan.methods[std::get<3>(key)].name}, {"begin", all.front()->begin}, {"values", std::move(values)},
-                        {"low", std::move(low)}, {"high", std::move(high)}});
+        list.push_back({{"scene", study.scenes[std::get<0>(key)].name},
+                        {"spp", std::get<1>(key)},
+                        {"metric", std::get<2>(key)},
+                        {"entry", plan.methods[std::get<3>(key)].name},
+                        {"begin", all.front()->begin},
+                        {"values", std::move(values)},
+                        {"low", std::move(low)},
+                        {"high", std::move(high)}});
     }
     return list;
 }
 
 Json figureData(const ReportContent& content) {
     Json list = Json::array();
-    for (const DrawnFigure& figure : content.figures) list.push_back({{"name", figure.name}, {"caption", figure.caption}, {"svg", figure.svg}});
+    for (const DrawnFigure& figure : content.figures)
+        list.push_back({{"name", figure.name}, {"caption", figure.caption}, {"svg", figure.svg}});
     return list;
 }
 
 Json latexData(const ReportContent& content) {
     Json list = Json::array();
-    for (const LatexTable& table : content.tables) list.push_back({{"name", table.name}, {"title", table.title}, {"text", table.text}});
+    for (const LatexTable& table : content.tables)
+        list.push_back({{"name", table.name}, {"title", table.title}, {"text", table.text}});
     return list;
 }
 
@@ -148,12 +167,18 @@ std::string filledTemplate(const std::string& page, const std::string& open, con
     return out;
 }
 
-std::string studyReport(const Study& study, const StudyPlan& plan, const StudyRecords& records, const ReportContent& content) {
+std::string studyReport(const Study& study, const StudyPlan& plan, const StudyRecords& records,
+                        const ReportContent& content) {
     Json shown = content.results;
     shown.erase("rows");  // the tables need the summaries only; the rows stand in results.csv
-    const Json data = {{"study", studyData(study, plan)}, {"results", std::move(shown)}, {"times", content.times},
-                       {"pictures", reportPictures(study, plan, records)}, {"series", seriesData(study, plan, records)},
-                       {"metrics", metricData(study)}, {"figures", figureData(content)}, {"latex", latexData(content)}};
+    const Json data = {{"study", studyData(study, plan)},
+                       {"results", std::move(shown)},
+                       {"times", content.times},
+                       {"pictures", reportPictures(study, plan, records)},
+                       {"series", seriesData(study, plan, records)},
+                       {"metrics", metricData(study)},
+                       {"figures", figureData(content)},
+                       {"latex", latexData(content)}};
     const std::string command = fmt::format("lumiscope study {}{}", study.path.string(),
                                             study.preset.empty() ? "" : " --preset " + study.preset);
     const std::string kicker = "Study" + (study.paper.empty() ? "" : " after " + study.paper);
@@ -161,9 +186,11 @@ std::string studyReport(const Study& study, const StudyPlan& plan, const StudyRe
         kReportHtml, "{{", "}}",
         {{"title", escapedMarkup(study.title)},
          {"kicker", escapedMarkup(kicker)},
-         {"description", study.description.empty() ? "" : "<p class=\"lead\">" + escapedMarkup(study.description) + "</p>"},
+         {"description",
+          study.description.empty() ? "" : "<p class=\"lead\">" + escapedMarkup(study.description) + "</p>"},
          {"facts", facts(study, records)},
-         {"footer", fmt::format("Made by <code>{}</code> · instruction set {} · study file {}. Numbers of every image stand in results.csv and "
+         {"footer", fmt::format("Made by <code>{}</code> · instruction set {} · study file {}. Numbers of every image "
+                                "stand in results.csv and "
                                 "results.json beside this file.",
                                 escapedMarkup(command), isaName(activeIsa()), study.digest)},
          {"css", kReportCss},

@@ -17,9 +17,10 @@ struct ReportContent {
     const std::vector<LatexTable>& tables;
 };
 
-/// The report: one HTML file that needs nothing else, with tables, plots (SVG), inset strips, images and error maps (PNG
-/// inside) that can be compared under a wipe, and the tables as LaTeX.
-std::string studyReport(const Study& study, const StudyPlan& plan, const StudyRecords& records, const ReportContent& content);
+/// The report: one HTML file that needs nothing else, with tables, plots (SVG), inset strips, images and error maps
+/// (PNG inside) that can be compared under a wipe, and the tables as LaTeX.
+std::string studyReport(const Study& study, const StudyPlan& plan, const StudyRecords& records,
+                        const ReportContent& content);
 
 /// The pictures of a report, a set for each scene, frame and number of samples: {"scene", "frame", "spp", "width",
 /// "height", "images": [{"name", "kind": "reference" | "method" | "error", "of": name, "png": data URI}],

@@ -31,17 +31,21 @@ std::string hexColour(const Vec3& colour) {
 }
 
 /// The rows of one set of pictures: those of the first seed, a method each.
-std::vector<const StudyRow*> rowsOf(const Study& study, const StudyPlan& plan, const StudyRecords& records, size_t scene, int64_t frame, int spp) {
+std::vector<const StudyRow*> rowsOf(const Study& study, const StudyPlan& plan, const StudyRecords& records,
+                                    size_t scene, int64_t frame, int spp) {
     std::vector<const StudyRow*> rows;
     for (const StudyRow& row : records.rows)
-        if (row.scene == scene && row.frame == frame && row.spp == spp && row.seed == study.seeds.front()) rows.push_back(&row);
+        if (row.scene == scene && row.frame == frame && row.spp == spp && row.seed == study.seeds.front())
+            rows.push_back(&row);
     std::sort(rows.begin(), rows.end(), [](const StudyRow* a, const StudyRow* b) { return a->method < b->method; });
-    if (rows.size() > kMostMethods) std::erase_if(rows, [&](const StudyRow* row) { return plan.methods[row->method].whole.has_value(); });
+    if (rows.size() > kMostMethods)
+        std::erase_if(rows, [&](const StudyRow* row) { return plan.methods[row->method].whole.has_value(); });
     if (rows.size() > kMostMethods) rows.erase(rows.begin() + kMostMethods - 1, rows.end() - 1);
     return rows;
 }
 
-Json pictureSet(const Study& study, const StudyPlan& plan, const StudyRecords& records, const std::vector<const StudyRow*>& rows) {
+Json pictureSet(const Study& study, const StudyPlan& plan, const StudyRecords& records,
+                const std::vector<const StudyRow*>& rows) {
     const StudyRow& first = *rows.front();
     float exposure = 0;
     for (const StudyReferenceNote& note : records.references)
@@ -56,7 +60,9 @@ Json pictureSet(const Study& study, const StudyPlan& plan, const StudyRecords& r
     std::vector<Image> maps;
     for (const StudyRow* row : rows) {
         ImagePair pair{readColour(row->image), readColour(row->reference), {}, exposure, study.metricSettings};
-        images.push_back({{"name", plan.methods[row->method].name}, {"kind", "method"}, {"png", pngUri(pair.image, "RGB", colours)}});
+        images.push_back({{"name", plan.methods[row->method].name},
+                          {"kind", "method"},
+                          {"png", pngUri(pair.image, "RGB", colours)}});
         pair.prepare();
         maps.push_back(metric.measure(pair, true).map);
     }
@@ -67,14 +73,22 @@ Json pictureSet(const Study& study, const StudyPlan& plan, const StudyRecords& r
     const DisplaySettings map = range.display();
     for (size_t i = 0; i < rows.size(); ++i) {
         const std::string& name = plan.methods[rows[i]->method].name;
-        images.push_back({{"name", name + " error"}, {"title", name + " · " + metric.title}, {"kind", "error"}, {"of", name},
+        images.push_back({{"name", name + " error"},
+                          {"title", name + " · " + metric.title},
+                          {"kind", "error"},
+                          {"of", name},
                           {"png", pngUri(maps[i], "Y", map)}});
     }
     Json bar = Json::array();
     for (int i = 0; i <= 8; ++i) bar.push_back(hexColour(colourMapValue(metric.mapColours, static_cast<float>(i) / 8)));
-    return {{"scene", study.scenes[first.scene].name}, {"frame", first.frame}, {"spp", first.spp},
-            {"width", reference.width()}, {"height", reference.height()}, {"images", std::move(images)},
-            {"error_map", {{"title", metric.title}, {"low", map.low}, {"high", map.high}, {"colours", std::move(bar)}}}};
+    return {
+        {"scene", study.scenes[first.scene].name},
+        {"frame", first.frame},
+        {"spp", first.spp},
+        {"width", reference.width()},
+        {"height", reference.height()},
+        {"images", std::move(images)},
+        {"error_map", {{"title", metric.title}, {"low", map.low}, {"high", map.high}, {"colours", std::move(bar)}}}};
 }
 
 }  // namespace

@@ -26,7 +26,9 @@ Json textsJson(const std::vector<std::pair<std::string, std::string>>& values) {
     return object;
 }
 
-std::string sceneName(const Study& study, size_t scene) { return scene == kAllScenes ? "all" : study.scenes[scene].name; }
+std::string sceneName(const Study& study, size_t scene) {
+    return scene == kAllScenes ? "all" : study.scenes[scene].name;
+}
 
 /// What every row begins with. Rows of one method at one number of samples differ in frame and seed only.
 Json headJson(const Study& study, const StudyPlan& plan, size_t scene, size_t method, int spp) {
@@ -39,8 +41,12 @@ Json rowsJson(const Study& study, const StudyPlan& plan, const StudyRecords& rec
     Json rows = Json::array();
     for (const StudyRow& row : records.rows) {
         const StudyMethod& method = plan.methods[row.method];
-        Json entry = {{"scene", study.scenes[row.scene].name}, {"frame", frameJson(row.frame)}, {"entry", method.name},
-                      {"spp", row.spp}, {"seed", row.seed}, {"module", study.entries[method.entry].module}};
+        Json entry = {{"scene", study.scenes[row.scene].name},
+                      {"frame", frameJson(row.frame)},
+                      {"entry", method.name},
+                      {"spp", row.spp},
+                      {"seed", row.seed},
+                      {"module", study.entries[method.entry].module}};
         if (method.whole) entry["without"] = method.stage;
         if (study.sweep && !method.coordinates.empty())
             for (size_t i = 0; i < method.coordinates.size(); ++i)
@@ -75,12 +81,15 @@ Json rankingsJson(const Study& study, const StudyPlan& plan, const StudySummarie
     for (const StudyRanking& ranking : all.rankings) {
         Json places = Json::array();
         for (const StudyRanking::Place& place : ranking.places) {
-            Json entry = {{"entry", plan.methods[place.method].name}, {"best_rank", place.rank.best},
+            Json entry = {{"entry", plan.methods[place.method].name},
+                          {"best_rank", place.rank.best},
                           {"worst_rank", place.rank.worst}};
             if (place.toBest.count > 0) entry["difference_to_first"] = intervalJson(place.toBest);
             places.push_back(std::move(entry));
         }
-        list.push_back({{"scene", sceneName(study, ranking.scene)}, {"spp", ranking.spp}, {"metric", ranking.metric},
+        list.push_back({{"scene", sceneName(study, ranking.scene)},
+                        {"spp", ranking.spp},
+                        {"metric", ranking.metric},
                         {"places", std::move(places)}});
     }
     return list;
@@ -108,7 +117,8 @@ Json biasJson(const Study& study, const StudyPlan& plan, const StudySummaries& a
 Json slopesJson(const Study& study, const StudyPlan& plan, const StudySummaries& all) {
     Json list = Json::array();
     for (const StudySlope& slope : all.slopes) {
-        Json entry = {{"scene", sceneName(study, slope.scene)}, {"entry", plan.methods[slope.method].name},
+        Json entry = {{"scene", sceneName(study, slope.scene)},
+                      {"entry", plan.methods[slope.method].name},
                       {"metric", slope.metric}};
         entry.update(intervalJson(slope.slope));
         list.push_back(std::move(entry));
@@ -159,9 +169,14 @@ Json tuningJson(const Study& study, const StudyRecords& records) {
         Json candidates = Json::array();
         for (const StudyChoice::Candidate& candidate : choice.candidates)
             candidates.push_back({{"values", textsJson(candidate.values)}, {"metric", number(candidate.metric)}});
-        list.push_back({{"scene", study.scenes[choice.scene].name}, {"entry", study.entries[choice.entry].name},
-                        {"spp", choice.spp}, {"frame", study.tuning->frame}, {"metric", study.tuning->metric},
-                        {"chosen", textsJson(choice.values)}, {"at_end", choice.atEnds}, {"candidates", std::move(candidates)}});
+        list.push_back({{"scene", study.scenes[choice.scene].name},
+                        {"entry", study.entries[choice.entry].name},
+                        {"spp", choice.spp},
+                        {"frame", study.tuning->frame},
+                        {"metric", study.tuning->metric},
+                        {"chosen", textsJson(choice.values)},
+                        {"at_end", choice.atEnds},
+                        {"candidates", std::move(candidates)}});
     }
     return list;
 }
@@ -169,8 +184,13 @@ Json tuningJson(const Study& study, const StudyRecords& records) {
 Json referencesJson(const Study& study, const StudyRecords& records) {
     Json list = Json::array();
     for (const StudyReferenceNote& note : records.references)
-        list.push_back({{"scene", study.scenes[note.scene].name}, {"frame", note.frame}, {"spp", study.reference.spp},
-                        {"file", note.file}, {"floor", valuesJson(note.floor)}, {"own", valuesJson(note.own)}, {"details", valuesJson(note.details)},
+        list.push_back({{"scene", study.scenes[note.scene].name},
+                        {"frame", note.frame},
+                        {"spp", study.reference.spp},
+                        {"file", note.file},
+                        {"floor", valuesJson(note.floor)},
+                        {"own", valuesJson(note.own)},
+                        {"details", valuesJson(note.details)},
                         {"nonfinite_pixels", note.nonFinitePixels}});
     return list;
 }
@@ -202,8 +222,12 @@ Json checksJson(const Study& study, const std::vector<StudyCheckResult>& checks,
     for (const StudyCheckResult& result : checks) {
         const StudyCheck& check = study.checks[result.check];
         if (check.timed() != timed) continue;
-        Json entry = {{"claim", claimText(study, check)}, {"scene", sceneName(study, result.scene)}, {"spp", result.spp}, {"entry", check.entry},
-                      {"metric", check.metric}, {"value", intervalJson(result.value)}};
+        Json entry = {{"claim", claimText(study, check)},
+                      {"scene", sceneName(study, result.scene)},
+                      {"spp", result.spp},
+                      {"entry", check.entry},
+                      {"metric", check.metric},
+                      {"value", intervalJson(result.value)}};
         if (!result.against.empty()) entry["against"] = result.against, entry["ratio"] = intervalJson(result.ratio);
         entry[check.atLeast ? "at_least" : "at_most"] = check.bound;
         entry["verdict"] = verdictText(result.verdict);
@@ -212,12 +236,18 @@ Json checksJson(const Study& study, const std::vector<StudyCheckResult>& checks,
     return list;
 }
 
-Json resultsJson(const Study& study, const StudyPlan& plan, const StudyRecords& records, const StudySummaries& summaries,
-                 const std::vector<StudyCheckResult>& checks) {
+Json resultsJson(const Study& study, const StudyPlan& plan, const StudyRecords& records,
+                 const StudySummaries& summaries, const std::vector<StudyCheckResult>& checks) {
     Json all;
-    all["study"] = {{"name", study.name}, {"title", study.title}, {"paper", study.paper}, {"preset", study.preset},
-                    {"file_digest", study.digest}, {"isa", isaName(activeIsa())}, {"reference_spp", study.reference.spp},
-                    {"seeds", study.seeds}, {"interval_level", study.intervals.level}};
+    all["study"] = {{"name", study.name},
+                    {"title", study.title},
+                    {"paper", study.paper},
+                    {"preset", study.preset},
+                    {"file_digest", study.digest},
+                    {"isa", isaName(activeIsa())},
+                    {"reference_spp", study.reference.spp},
+                    {"seeds", study.seeds},
+                    {"interval_level", study.intervals.level}};
     if (study.size.width > 0) all["study"]["size"] = {study.size.width, study.size.height};
     all["rows"] = rowsJson(study, plan, records);
     all["references"] = referencesJson(study, records);
@@ -249,7 +279,8 @@ std::string resultsCsv(const Study& study, const StudyPlan& plan, const StudyRec
     for (const StudyRow& row : records.rows) {
         const StudyMethod& method = plan.methods[row.method];
         text += fmt::format("{},{},{},{},{}", csvText(study.scenes[row.scene].name),
-                            row.frame < 0 ? "sequence" : std::to_string(row.frame), csvText(method.name), row.spp, row.seed);
+                            row.frame < 0 ? "sequence" : std::to_string(row.frame), csvText(method.name), row.spp,
+                            row.seed);
         if (study.sweep)
             for (size_t i = 0; i < study.sweep->axes.size(); ++i)
                 text += "," + (i < method.coordinates.size() ? csvText(method.coordinates[i]) : "");

@@ -19,8 +19,9 @@ namespace lumi {
 using nlohmann::json;
 namespace {
 
-/// Wall-clock times by stage, gathered frame by frame, for their medians over all frames of the job. The first frame counts
-/// like every other, though its caches are cold. The frame's signals are traced once, all that any of the methods reads.
+/// Wall-clock times by stage, gathered frame by frame, for their medians over all frames of the job. The first frame
+/// counts like every other, though its caches are cold. The frame's signals are traced once, all that any of the
+/// methods reads.
 class JobTimes {
 public:
     void add(const FrameOutput& frame) {
@@ -46,9 +47,11 @@ public:
             for (const auto& [stage, values] : stages_)
                 if (stage.starts_with(method.instance + "."))
                     stages[stage.substr(method.instance.size() + 1)] = median(values);
-            methods[method.name] = {{"run_ms", median(runs_.at(method.instance))}, {"stages_ms", stages},
-                                    {"trace_ms", reads_.at(method.instance) ? of("trace") : 0.0},
-                                    {"rays_per_frame", frames_ ? static_cast<double>(rays_.at(method.instance)) / frames_ : 0}};
+            methods[method.name] = {
+                {"run_ms", median(runs_.at(method.instance))},
+                {"stages_ms", stages},
+                {"trace_ms", reads_.at(method.instance) ? of("trace") : 0.0},
+                {"rays_per_frame", frames_ ? static_cast<double>(rays_.at(method.instance)) / frames_ : 0}};
         }
         return {{"frames", frames_}, {"pose_ms", of("pose")}, {"build_ms", of("build")}, {"methods", methods}};
     }
@@ -70,22 +73,28 @@ json measureRow(const JobContext& context, const Image& image, const StudyRefere
         if (isSquaredError(id)) corrected[id] = withoutReferenceNoise(id, measured.value, reference.floor.at(id));
         if (!measured.reason.empty()) reasons[id] = measured.reason;
     }
-    return {{"metrics", metrics}, {"corrected", corrected}, {"reasons", reasons}, {"nonfinite_pixels", pair.nonFiniteImage}};
+    return {{"metrics", metrics},
+            {"corrected", corrected},
+            {"reasons", reasons},
+            {"nonfinite_pixels", pair.nonFiniteImage}};
 }
 
 /// The study's statistics of one method's frame, beside the metrics.
-void addStatistics(const JobContext& context, size_t method, const FrameOutput& frame, const Image& image, FrameRunner& runner, json& row) {
+void addStatistics(const JobContext& context, size_t method, const FrameOutput& frame, const Image& image,
+                   FrameRunner& runner, json& row) {
     const StudyMethod& own = context.plan.methods[method];
     const auto against = [&](const std::string& metric, int spp) {
         ImagePair pair{image, runner.reference({}, spp)->image, {}, runner.exposure(), context.study.metricSettings};
         pair.prepare();
         return findMetric(metric).measure(pair, false).value;
     };
-    for (const auto& [name, value] : frameStatistics(context.study, context.study.entries[own.entry], own.instance, frame, against)) row["metrics"][name] = value;
+    for (const auto& [name, value] :
+         frameStatistics(context.study, context.study.entries[own.entry], own.instance, frame, against))
+        row["metrics"][name] = value;
 }
 
-/// 1 where a surface is seen that does not shine itself, nor does a pixel beside it: emission and sky, which methods pass
-/// by, follow a step at once, and are so bright that they would drown what is filtered.
+/// 1 where a surface is seen that does not shine itself, nor does a pixel beside it: emission and sky, which methods
+/// pass by, follow a step at once, and are so bright that they would drown what is filtered.
 Image litSurfaces(const Signals& signals) {
     const Image &emission = signals[Signal::Emission], &depth = signals[Signal::Depth];
     Image mask(depth.extent(), 1);
@@ -125,8 +134,8 @@ public:
         lags_.assign(values_.size(), LagMeter(before_, reference, &mask));
     }
     /// The results of a frame, a method each; `geometry` where it is wanted.
-    void add(const FrameOutput& frame, const std::vector<std::shared_ptr<const Image>>& images, std::shared_ptr<const Signals> geometry,
-             float exposureEv) {
+    void add(const FrameOutput& frame, const std::vector<std::shared_ptr<const Image>>& images,
+             std::shared_ptr<const Signals> geometry, float exposureEv) {
         for (size_t i = 0; i < images.size() && differs(frame.number); ++i) {
             const TemporalInput input{*images[i], *previous_[i], geometry.get(), previousGeometry_.get(), exposureEv};
             for (const std::string& id : study_.temporalMetrics)
@@ -142,7 +151,9 @@ public:
         for (const auto& [id, values] : values_[method]) {
             double sum = 0;
             for (size_t i = before; i < values.size(); ++i) sum += values[i];
-            metrics[id] = {{"mean", sum / static_cast<double>(values.size() - before)}, {"begin", study_.frames.temporalBegin}, {"frames", values}};
+            metrics[id] = {{"mean", sum / static_cast<double>(values.size() - before)},
+                           {"begin", study_.frames.temporalBegin},
+                           {"frames", values}};
         }
         if (!lags_.empty()) {
             const Lag lag = lags_[method].lag(step());
@@ -175,9 +186,15 @@ void writeImage(const std::filesystem::path& path, const Image& image) {
 /// Writes the reference's image, unless it is there.
 json referenceJson(const Study& study, const StudyJob& job, int64_t frame, const StudyReferenceFrame& reference,
                    float exposureEv, const std::filesystem::path& out) {
-    const std::string file = fmt::format("references/{}-{}.{:04}.exr", fileNameOf(study.scenes[job.scene].name), reference.key, frame);
+    const std::string file =
+        fmt::format("references/{}-{}.{:04}.exr", fileNameOf(study.scenes[job.scene].name), reference.key, frame);
     if (!std::filesystem::exists(out / file)) writeImage(out / file, reference.image);
-    return {{"frame", frame}, {"file", file}, {"exposure", exposureEv}, {"floor", reference.floor}, {"own", reference.own}, {"details", reference.details},
+    return {{"frame", frame},
+            {"file", file},
+            {"exposure", exposureEv},
+            {"floor", reference.floor},
+            {"own", reference.own},
+            {"details", reference.details},
             {"nonfinite_pixels", reference.nonFinitePixels}};
 }
 
@@ -207,7 +224,9 @@ json runMeasureJob(const JobContext& context, const StudyJob& job, const std::fi
     const int64_t last = lastFrame(study, job.kind);
     const double frames = static_cast<double>(last - study.frames.begin + 1);
     std::map<std::string, TapSet> taps;
-    for (const size_t method : job.methods) taps[context.plan.methods[method].instance] = statisticTaps(study, study.entries[context.plan.methods[method].entry]);
+    for (const size_t method : job.methods)
+        taps[context.plan.methods[method].instance] =
+            statisticTaps(study, study.entries[context.plan.methods[method].entry]);
     double done = 0, sampled = 0;
     const auto reference = [&](int64_t number) {
         auto made = runner.reference([&](uint64_t samples, uint64_t target) {
@@ -222,7 +241,8 @@ json runMeasureJob(const JobContext& context, const StudyJob& job, const std::fi
         const int64_t number = runner.next();
         context.progress(done / frames, sampled, fmt::format("frame {}", number));
         const bool isMeasured = std::binary_search(study.frames.measure.begin(), study.frames.measure.end(), number);
-        const FrameOutput frame = runner.advance(sequence.signalsAt(number), isMeasured ? taps : std::map<std::string, TapSet>{});
+        const FrameOutput frame =
+            runner.advance(sequence.signalsAt(number), isMeasured ? taps : std::map<std::string, TapSet>{});
         measuredTimes.add(frame);
         done += 1;
         if (sequence.wantsReference(number)) sequence.addReference(frame, reference(number)->image);
@@ -243,7 +263,8 @@ json runMeasureJob(const JobContext& context, const StudyJob& job, const std::fi
     }
     if (!study.temporalMetrics.empty())
         for (size_t i = 0; i < job.methods.size(); ++i)
-            result["sequences"].push_back({{"method", context.plan.methods[job.methods[i]].name}, {"metrics", sequence.toJson(i)}});
+            result["sequences"].push_back(
+                {{"method", context.plan.methods[job.methods[i]].name}, {"metrics", sequence.toJson(i)}});
     times = measuredTimes.toJson(context, job);
     return result;
 }

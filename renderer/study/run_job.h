@@ -25,15 +25,18 @@ struct JobContext {
 };
 
 /// What a job leaves is the same every time, as JSON and images; wall-clock times are apart.
-///     Measure: {"rows": [{"frame", "method", "metrics": {id: value}, "corrected": {id: value}, "reasons": {id: why there is no
+///     Measure: {"rows": [{"frame", "method", "metrics": {id: value}, "corrected": {id: value}, "reasons": {id: why
+///     there is no
 ///                         value}, "nonfinite_pixels"}],
 ///               "sequences": [{"method", "metrics": {id: {"mean", "begin", "frames": [values], "reason"}}}],
-///               "references": [{"frame", "file", "exposure", "floor": {id: value}, "own": {id: value}, "nonfinite_pixels"}]}
+///               "references": [{"frame", "file", "exposure", "floor": {id: value}, "own": {id: value},
+///               "nonfinite_pixels"}]}
 ///     Tune:    {"chosen": {id: value}, "candidates": [{"values": {id: value}, "metric": value}]}
-/// Runs the job's frames from an empty history and measures; before it returns every image that is measured is in `folder`
-/// as `<method>.<frame>.exr`, and its reference under `out`/references. `times`: {"frames", "pose_ms", "build_ms",
-/// "methods": {name: {"run_ms", "stages_ms", "trace_ms", "rays_per_frame"}}}, medians over the frames. Throws Error(BadInput) headed by the study file's position for a value that the scene's
-/// document does not take, Error(Interrupted).
+/// Runs the job's frames from an empty history and measures; before it returns every image that is measured is in
+/// `folder` as `<method>.<frame>.exr`, and its reference under `out`/references. `times`: {"frames", "pose_ms",
+/// "build_ms", "methods": {name: {"run_ms", "stages_ms", "trace_ms", "rays_per_frame"}}}, medians over the frames.
+/// Throws Error(BadInput) headed by the study file's position for a value that the scene's document does not take,
+/// Error(Interrupted).
 nlohmann::json runMeasureJob(const JobContext& context, const StudyJob& job, const std::filesystem::path& folder,
                              const std::filesystem::path& out, nlohmann::json& times);
 nlohmann::json runTuneJob(const JobContext& context, const StudyJob& job);

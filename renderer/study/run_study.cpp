@@ -50,8 +50,13 @@ Study withScenesThere(Study study, MessageLog& log) {
 class StudyRunner {
 public:
     StudyRunner(const Study& study, const StudyOptions& options, MessageLog& log)
-        : study_(withScenesThere(study, log)), options_(options), log_(log), folder_(study_, options.out),
-          references_(study_, options.referenceCache, log), plan_(planStudy(study_)), clock_(study_, plan_) {}
+        : study_(withScenesThere(study, log)),
+          options_(options),
+          log_(log),
+          folder_(study_, options.out),
+          references_(study_, options.referenceCache, log),
+          plan_(planStudy(study_)),
+          clock_(study_, plan_) {}
 
     StudyOutcome run() {
         findJobs();
@@ -65,15 +70,16 @@ public:
     }
 
 private:
-    /// Looks at every scene, and whether it takes the values that are set, before hours go into the first: the folder of a
-    /// job is named after all that its result depends on.
+    /// Looks at every scene, and whether it takes the values that are set, before hours go into the first: the folder
+    /// of a job is named after all that its result depends on.
     void findJobs() {
         const std::string program = programDigest();
         for (job_ = 0; job_ < plan_.jobs.size(); ++job_) {
             const StudyJob& job = plan_.jobs[job_];
             const std::string content = job.definition + sceneOf(job)->contentDigest + isaName(activeIsa()) + program +
                                         checkJobValues(contextOf(job), job);
-            folders_.push_back(job.id + "-" + digest({reinterpret_cast<const uint8_t*>(content.data()), content.size()}).substr(0, 8));
+            folders_.push_back(job.id + "-" +
+                               digest({reinterpret_cast<const uint8_t*>(content.data()), content.size()}).substr(0, 8));
             if (!isThere(job_)) continue;
             ++outcome_.jobsFound;
             clock_.found(job_);
@@ -100,7 +106,12 @@ private:
     }
 
     JobContext contextOf(const StudyJob& job) {
-        return {study_, plan_, sceneOf(job), references_, log_, options_.stop,
+        return {study_,
+                plan_,
+                sceneOf(job),
+                references_,
+                log_,
+                options_.stop,
                 [this, scene = job.scene](size_t entry, int spp) { return tunedValues(scene, entry, spp); },
                 [this](double frames, double samples, const std::string& step) {
                     const std::lock_guard lock(reporting_);
@@ -134,7 +145,8 @@ private:
         const auto read = [&](const char* name) {
             const json value = json::parse(readTextFile(folder / name), nullptr, false);
             if (value.is_discarded())
-                throwBadInput({"is damaged", (folder / name).string(), "what a study wrote; remove it to run the job again", ""});
+                throwBadInput(
+                    {"is damaged", (folder / name).string(), "what a study wrote; remove it to run the job again", ""});
             return value;
         };
         outcome_.records.add(plan_, plan_.jobs[index], read("job.json"), read("times.json"), folder, options_.out);
@@ -147,8 +159,9 @@ private:
         choice.atEnds = tunedToAnEnd(entry.tune, choice.values);
         for (const auto& [id, text] : choice.values)
             if (std::count(choice.atEnds.begin(), choice.atEnds.end(), id))
-                log_.warning(fmt::format("tuning chose {} {} for \"{}\" on \"{}\", an end of its values: the best may lie beyond it", id, text, entry.name,
-                                         study_.scenes[choice.scene].name));
+                log_.warning(fmt::format(
+                    "tuning chose {} {} for \"{}\" on \"{}\", an end of its values: the best may lie beyond it", id,
+                    text, entry.name, study_.scenes[choice.scene].name));
     }
 
     std::vector<StudyValue> tunedValues(size_t scene, size_t entry, int spp) const {
@@ -167,15 +180,18 @@ private:
     }
     void tell(const std::string& step) {
         if (!options_.progress) return;
-        StudyProgress progress{job_, plan_.jobs.size(), outcome_.jobsFound, step, clock_.fraction(), nowS(), clock_.leftS(nowS())};
+        StudyProgress progress{job_,   plan_.jobs.size(),   outcome_.jobsFound, step, clock_.fraction(),
+                               nowS(), clock_.leftS(nowS())};
         if (job_ < plan_.jobs.size()) progress.step = fmt::format("{}: {}", plan_.jobs[job_].id, step);
         options_.progress(progress);
     }
 
     /// References, figures and tables of the study as it is now.
-    std::set<std::string> filesBeside(const std::vector<DrawnFigure>& figures, const std::vector<LatexTable>& tables) const {
+    std::set<std::string> filesBeside(const std::vector<DrawnFigure>& figures,
+                                      const std::vector<LatexTable>& tables) const {
         std::set<std::string> files{"tables/all.tex"};
-        for (const DrawnFigure& figure : figures) files.insert({"figures/" + figure.name + ".png", "figures/" + figure.name + ".svg"});
+        for (const DrawnFigure& figure : figures)
+            files.insert({"figures/" + figure.name + ".png", "figures/" + figure.name + ".svg"});
         for (const LatexTable& table : tables) files.insert("tables/" + table.name + ".tex");
         for (const StudyReferenceNote& note : outcome_.records.references) files.insert(note.file);
         return files;

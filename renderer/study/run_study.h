@@ -17,9 +17,9 @@ struct StudyProgress {
     size_t job = 0, jobs = 0;  ///< the one that runs, from 0
     size_t found = 0;          ///< jobs that were done before
     std::string step;
-    double fraction = 0;       ///< of all work
+    double fraction = 0;  ///< of all work
     double elapsedS = 0;
-    double leftS = -1;         ///< estimate; below 0 while nothing is known
+    double leftS = -1;  ///< estimate; below 0 while nothing is known
 };
 
 struct StudyOptions {
@@ -36,7 +36,8 @@ struct StudyOutcome {
     StudySummaries summaries;
     StudyTimes times;
     std::vector<StudyCheckResult> checks;
-    std::vector<std::filesystem::path> files;  ///< results.json, results.csv, timings.json, report.html, figures/, tables/
+    std::vector<std::filesystem::path>
+        files;  ///< results.json, results.csv, timings.json, report.html, figures/, tables/
     size_t jobsRun = 0, jobsFound = 0;
     double seconds = 0;
 };
@@ -44,11 +45,10 @@ struct StudyOutcome {
 /// Runs what is missing of a study and writes its results into the folder. Every finished job is a folder of its own
 /// under `jobs`, whose job.json is written last and atomically: after an interruption at any moment the study goes on
 /// with the first unfinished job, and results.json and results.csv come out byte for byte as if it had never been
-/// interrupted. Jobs of another definition, scene, instruction set or build of the program do not count, and are removed
-/// at the end. Scenes and values are checked before the first job; figures and tables are made anew each time, from what the
-/// jobs left.
-/// Throws Error(Usage) if the folder is not this study's (StudyFolder), Error(BadInput) for a scene or value that is not
-/// there, Error(Interrupted), Error(Resources).
+/// interrupted. Jobs of another definition, scene, instruction set or build of the program do not count, and are
+/// removed at the end. Scenes and values are checked before the first job; figures and tables are made anew each time,
+/// from what the jobs left. Throws Error(Usage) if the folder is not this study's (StudyFolder), Error(BadInput) for a
+/// scene or value that is not there, Error(Interrupted), Error(Resources).
 StudyOutcome runStudy(const Study& study, const StudyOptions& options, MessageLog& log);
 
 }  // namespace lumi

@@ -18,7 +18,10 @@ namespace {
 class CandidateRuns {
 public:
     CandidateRuns(const JobContext& context, const StudyJob& job)
-        : context_(context), job_(job), entry_(context.study.entries[job.entry]), metric_(findMetric(context.study.tuning->metric)),
+        : context_(context),
+          job_(job),
+          entry_(context.study.entries[job.entry]),
+          metric_(findMetric(context.study.tuning->metric)),
           expectedRuns_(static_cast<double>(tuningEffort(entry_.tune).runs)) {}
 
     /// The metric of each.
@@ -36,11 +39,13 @@ public:
         runs_ += 1;
         if (!reference_)
             reference_ = runner.reference([&](uint64_t samples, uint64_t target) {
-                report(0, static_cast<double>(samples), fmt::format("reference of frame {}, {} of {} spp", study.tuning->frame, samples, target));
+                report(0, static_cast<double>(samples),
+                       fmt::format("reference of frame {}, {} of {} spp", study.tuning->frame, samples, target));
             });
         std::vector<double> values;
         for (const RunningMethod& method : methods) {
-            ImagePair pair{*frame->results.at(method.instance), reference_->image, {}, runner.exposure(), study.metricSettings};
+            ImagePair pair{
+                *frame->results.at(method.instance), reference_->image, {}, runner.exposure(), study.metricSettings};
             pair.prepare();
             values.push_back(metric_.measure(pair, false).value);
         }
@@ -77,8 +82,9 @@ json runTuneJob(const JobContext& context, const StudyJob& job) {
     std::vector<size_t> counts;
     for (const StudyAxis& axis : entry.tune) counts.push_back(axis.values.size());
     CandidateRuns runs(context, job);
-    const TuningSearch search = searchTuning(counts, findMetric(tuning.metric).higherIsBetter,
-                                             [&](const std::vector<TuningPlace>& places) { return runs.measure(places); });
+    const TuningSearch search =
+        searchTuning(counts, findMetric(tuning.metric).higherIsBetter,
+                     [&](const std::vector<TuningPlace>& places) { return runs.measure(places); });
     json result = {{"candidates", json::array()}};
     for (size_t i = 0; i < search.places.size(); ++i) {
         json values = json::object();
@@ -87,7 +93,8 @@ json runTuneJob(const JobContext& context, const StudyJob& job) {
         if (i == search.best) result["chosen"] = values;
     }
     if (search.best == search.places.size())
-        throwBadInput({fmt::format("no combination of \"{}\" has a value of {} on frame {}", entry.name, tuning.metric, tuning.frame),
+        throwBadInput({fmt::format("no combination of \"{}\" has a value of {} on frame {}", entry.name, tuning.metric,
+                                   tuning.frame),
                        context.study.path.string(), "images that can be measured", ""});
     return result;
 }

@@ -24,8 +24,8 @@ struct StudyAxis {
 };
 
 struct StudyScene {
-    std::string name;    ///< in results; unique in a study
-    std::string source;  ///< a built-in name, a path (relative to the study file too), or `assets:` and a path there
+    std::string name;       ///< in results; unique in a study
+    std::string source;     ///< a built-in name, a path (relative to the study file too), or `assets:` and a path there
     bool optional = false;  ///< left out, with a warning, where it is not found
     std::vector<StudyValue> set;
     std::string where;
@@ -36,8 +36,8 @@ struct StudyEntry {
     std::string name;    ///< in results; unique in a study
     std::string module;  ///< id of the catalogue
     std::vector<StudyValue> set;
-    std::vector<StudyAxis> tune;  ///< chosen for each scene; see StudyTuning
-    std::vector<int> spp;         ///< instead of the study's; empty: those
+    std::vector<StudyAxis> tune;                        ///< chosen for each scene; see StudyTuning
+    std::vector<int> spp;                               ///< instead of the study's; empty: those
     std::vector<std::pair<std::string, double>> known;  ///< statistics that are so by construction, by name
 };
 
@@ -50,11 +50,11 @@ struct StudyStep {
 /// Frames [begin, end) run in order from an empty history; some are measured.
 struct StudyFrames {
     int64_t begin = 0, end = 1;
-    std::vector<int64_t> measure{0};              ///< ascending, within the range
-    int64_t temporalBegin = 0, temporalEnd = 0;   ///< frames whose difference to the one before is measured
-    int64_t temporalMeanFrom = 0;                 ///< of these, the first that counts for their mean
-    bool still = false;                           ///< time stands at the first frame
-    float fps = 0;                                ///< 0: the scene's
+    std::vector<int64_t> measure{0};             ///< ascending, within the range
+    int64_t temporalBegin = 0, temporalEnd = 0;  ///< frames whose difference to the one before is measured
+    int64_t temporalMeanFrom = 0;                ///< of these, the first that counts for their mean
+    bool still = false;                          ///< time stands at the first frame
+    float fps = 0;                               ///< 0: the scene's
     std::optional<StudyStep> step;
 };
 
@@ -68,8 +68,8 @@ struct StudySweep {
     std::vector<std::string> entries;  ///< swept; empty: all
 };
 
-/// How parameters under "tune" are chosen: by the best metric on one frame that is not measured, one parameter after the other
-/// until none moves (study/tuning.h).
+/// How parameters under "tune" are chosen: by the best metric on one frame that is not measured, one parameter after
+/// the other until none moves (study/tuning.h).
 struct StudyTuning {
     int64_t frame = 0;
     std::string metric = "rmse";
@@ -82,9 +82,9 @@ struct StudyPair {
     std::vector<std::string> against;  ///< several are one method at several costs
 };
 
-/// A number of every measured frame beside the metrics. Which of its parts are there says what it is of: a buffer of the
-/// method, a metric against another reference, the rays that the method traced itself, the bytes that it holds, or the ratio
-/// of two others.
+/// A number of every measured frame beside the metrics. Which of its parts are there says what it is of: a buffer of
+/// the method, a metric against another reference, the rays that the method traced itself, the bytes that it holds, or
+/// the ratio of two others.
 struct StudyStatistic {
     enum class Of { Mean, Least, Most, Percentile, ShareBelow, ShareAtLeast };
     std::string name, title, definition;
@@ -95,7 +95,7 @@ struct StudyStatistic {
     double value = 0;     ///< of Percentile, ShareBelow and ShareAtLeast
     std::string metric;   ///< of the catalogue, against a reference of `referenceSpp`
     int referenceSpp = 0;
-    std::string rays;     ///< camera, bounce, shadow or all: a pixel
+    std::string rays;         ///< camera, bounce, shadow or all: a pixel
     bool memory = false;      ///< bytes a pixel
     std::string over, under;  ///< statistics before this one: `over` divided by `under`
 };
@@ -116,7 +116,7 @@ struct StudyCheck {
     std::string scene;  ///< where it is claimed; empty: on each
     std::string entry, metric;
     std::vector<std::string> against;  ///< entries whose value times `bound` is the limit; empty: `bound` is
-    std::string atEqual;  ///< not empty: those are one curve, taken where this quantity is the entry's
+    std::string atEqual;               ///< not empty: those are one curve, taken where this quantity is the entry's
     double bound = 1;
     bool atLeast = false;  ///< else at most
     bool onAverage = false;
@@ -125,18 +125,18 @@ struct StudyCheck {
     bool timed() const;
 };
 
-/// Quantities of a check beside metrics and statistics: `frame_ms`, `run_ms`, `ns_per_ray` and, in studies that name the
-/// stages that trace, `tracing_ns_per_ray`.
+/// Quantities of a check beside metrics and statistics: `frame_ms`, `run_ms`, `ns_per_ray` and, in studies that name
+/// the stages that trace, `tracing_ns_per_ray`.
 const std::vector<std::string>& timeQuantities();
 bool isTimeQuantity(const std::string& id);
 
 /// An inset strip: one picture with its crops marked, and each crop as the methods show it.
 struct StudyFigure {
-    std::string name;                  ///< of its files
-    std::string scene;                 ///< empty: the study's first that is there
-    int64_t frame = -1;                ///< one that is measured; -1: the last
-    int spp = 0;                       ///< 0: the least of the study
-    std::string input;                 ///< entry that is shown first, as the input; empty: the first whose module is none
+    std::string name;    ///< of its files
+    std::string scene;   ///< empty: the study's first that is there
+    int64_t frame = -1;  ///< one that is measured; -1: the last
+    int spp = 0;         ///< 0: the least of the study
+    std::string input;   ///< entry that is shown first, as the input; empty: the first whose module is none
     std::vector<std::string> entries;  ///< empty: all
     std::string metric = "flip";       ///< of the maps, and the value under each crop
     struct Crop {
@@ -179,8 +179,9 @@ struct Study {
     std::vector<std::string> metrics;          ///< of images, as `list metrics` names them
     std::vector<std::string> temporalMetrics;  ///< of sequences
     std::vector<StudyStatistic> statistics;
-    std::vector<std::string> tracingStages;    ///< of methods, where they trace their own rays: what `tracing_ns_per_ray` counts
-    MetricSettings metricSettings;             ///< for every metric, reference and figure
+    std::vector<std::string>
+        tracingStages;              ///< of methods, where they trace their own rays: what `tracing_ns_per_ray` counts
+    MetricSettings metricSettings;  ///< for every metric, reference and figure
     std::optional<StudySweep> sweep;
     std::optional<StudyTuning> tuning;
     std::vector<StudyPair> pairs;

@@ -23,7 +23,8 @@ StudyClock::StudyClock(const Study& study, const StudyPlan& plan) {
         Job own;
         own.scene = job.scene;
         const bool tunes = job.kind == StudyJob::Kind::Tune;
-        const TuningEffort effort = tunes ? tuningEffort(study.entries[job.entry].tune) : TuningEffort{1, job.methods.size()};
+        const TuningEffort effort =
+            tunes ? tuningEffort(study.entries[job.entry].tune) : TuningEffort{1, job.methods.size()};
         const size_t methods = effort.places;
         const double frames = static_cast<double>(lastFrame(study, job.kind) - study.frames.begin + 1);
         own.frames = frames * (job.spp * static_cast<double>(effort.runs) + kMethodWork * static_cast<double>(methods));
@@ -35,8 +36,10 @@ StudyClock::StudyClock(const Study& study, const StudyPlan& plan) {
             if (definesImage(value.id)) problem += value.id + value.text;
         }
         if (tunes) problem += " tune", own.kind += " tune " + study.entries[job.entry].name;
-        else for (const size_t method : job.methods) own.kind += fmt::format(",{}", method);
-        if (known.insert(problem).second) own.references = static_cast<double>(referencesOf(study, job)) * study.reference.spp;
+        else
+            for (const size_t method : job.methods) own.kind += fmt::format(",{}", method);
+        if (known.insert(problem).second)
+            own.references = static_cast<double>(referencesOf(study, job)) * study.reference.spp;
         jobs_.push_back(std::move(own));
     }
 }
@@ -65,7 +68,8 @@ void StudyClock::end(double nowS) {
 double StudyClock::expectedFramesS(const Job& job) const {
     double seconds[2] = {0, 0}, frames[2] = {0, 0};  // of all scenes, of the job's
     const auto add = [&](const Job& other, double spentS, double share) {
-        for (int i = 0; i < (other.scene == job.scene ? 2 : 1); ++i) seconds[i] += spentS, frames[i] += other.frames * share;
+        for (int i = 0; i < (other.scene == job.scene ? 2 : 1); ++i)
+            seconds[i] += spentS, frames[i] += other.frames * share;
     };
     for (const Job& other : jobs_) {
         if (other.framesS < 0) continue;
@@ -103,7 +107,8 @@ double StudyClock::fraction() {
     for (size_t i = 0; i < jobs_.size(); ++i) {
         const Job& job = jobs_[i];
         const double frames = timed ? std::max(job.framesS >= 0 ? job.framesS : expectedFramesS(job), 0.0) : job.frames;
-        const double references = timed ? std::max(job.referencesS >= 0 ? job.referencesS : expectedReferencesS(job), 0.0) : job.references;
+        const double references =
+            timed ? std::max(job.referencesS >= 0 ? job.referencesS : expectedReferencesS(job), 0.0) : job.references;
         all += frames + references;
         if (job.done) done += frames + references;
         else if (running_ && i == current_)

@@ -8,9 +8,9 @@ namespace lumi {
 
 /// How far a study has come, and how long the rest will take.
 ///
-/// Frames and references are two kinds of work, each with a speed of its own that is learned as they are done: a reference
-/// may come from the cache, which no count of samples tells beforehand. A job like one that was run (scene, samples and
-/// methods alike) takes as long as that did; else the speed in its scene counts, else that in all.
+/// Frames and references are two kinds of work, each with a speed of its own that is learned as they are done: a
+/// reference may come from the cache, which no count of samples tells beforehand. A job like one that was run (scene,
+/// samples and methods alike) takes as long as that did; else the speed in its scene counts, else that in all.
 class StudyClock {
 public:
     StudyClock(const Study& study, const StudyPlan& plan);

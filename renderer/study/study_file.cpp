@@ -26,18 +26,21 @@ template <class Thing>
 void refuseTwin(const JsonTree& tree, const JsonValue& at, const std::vector<Thing>& earlier, const std::string& name,
                 const char* kind) {
     for (const Thing& thing : earlier)
-        if (thing.name == name) throwBadInput({fmt::format("two {} are called \"{}\"", kind, name), tree.where(at.at), "", ""});
+        if (thing.name == name)
+            throwBadInput({fmt::format("two {} are called \"{}\"", kind, name), tree.where(at.at), "", ""});
 }
 
 /// Tables and references are files named after their scene, those of all scenes together `all-scenes`.
-void refuseTwinFiles(const JsonTree& tree, const JsonValue& at, const std::vector<StudyScene>& earlier, const std::string& name) {
+void refuseTwinFiles(const JsonTree& tree, const JsonValue& at, const std::vector<StudyScene>& earlier,
+                     const std::string& name) {
     const std::string file = fileNameOf(name);
     if (name == "all" || file == "all-scenes")
-        throwBadInput({fmt::format("a scene cannot be called \"{}\"", name), tree.where(at.at), "another name: this one is for the mean over all scenes", ""});
+        throwBadInput({fmt::format("a scene cannot be called \"{}\"", name), tree.where(at.at),
+                       "another name: this one is for the mean over all scenes", ""});
     for (const StudyScene& scene : earlier)
         if (fileNameOf(scene.name) == file)
-            throwBadInput({fmt::format("files of scenes \"{}\" and \"{}\" would have one name", scene.name, name), tree.where(at.at),
-                           "names that differ in letters or digits", ""});
+            throwBadInput({fmt::format("files of scenes \"{}\" and \"{}\" would have one name", scene.name, name),
+                           tree.where(at.at), "names that differ in letters or digits", ""});
 }
 
 std::vector<StudyScene> readScenes(const JsonTree& tree, const JsonValue& section) {
@@ -93,8 +96,8 @@ void readEntries(const JsonTree& tree, const JsonValue& section, Study& study) {
         StudyEntry entry = readEntry(tree, item, study);
         refuseTwin(tree, item, study.entries, entry.name, "entries");
         if (!entry.tune.empty() && !study.tuning)
-            throwBadInput({fmt::format("\"{}\" is tuned, but nothing says on which frame", entry.name), tree.where(item.at),
-                           "\"tuning\": {\"frame\": ...} in the study", ""});
+            throwBadInput({fmt::format("\"{}\" is tuned, but nothing says on which frame", entry.name),
+                           tree.where(item.at), "\"tuning\": {\"frame\": ...} in the study", ""});
         study.entries.push_back(std::move(entry));
     }
 }
@@ -108,7 +111,8 @@ void readSweep(const JsonTree& tree, const JsonValue* section, Study& study) {
     if (sweep.axes.empty() || sweep.axes.size() > 2) refuseValue(tree, axes, "axes", "one or two axes");
     if (const JsonValue* entries = reader.find("entries")) {
         if (!entries->isArray()) refuseValue(tree, *entries, "entries", "an array of names");
-        for (const JsonValue& item : entries->items) sweep.entries.push_back(readEntryName(tree, item, study, "entries"));
+        for (const JsonValue& item : entries->items)
+            sweep.entries.push_back(readEntryName(tree, item, study, "entries"));
     }
     reader.finish();
     for (const StudyEntry& entry : study.entries) {
@@ -143,7 +147,8 @@ void readTuning(const JsonTree& tree, const JsonValue* section, Study& study) {
 }
 
 /// One entry's name, or several.
-std::vector<std::string> readEntryNames(const JsonTree& tree, const JsonValue& value, const Study& study, const std::string& name) {
+std::vector<std::string> readEntryNames(const JsonTree& tree, const JsonValue& value, const Study& study,
+                                        const std::string& name) {
     if (!value.isArray()) return {readEntryName(tree, value, study, name)};
     std::vector<std::string> names = readTexts(tree, value, name);
     for (const JsonValue& item : value.items) readEntryName(tree, item, study, name);
@@ -207,13 +212,15 @@ void readBody(const JsonTree& tree, const JsonValue& merged, Study& study) {
     study.scenes = readScenes(tree, top.need("scenes"));
     study.frames = readFrames(tree, top.find("frames"));
     if (const JsonValue* spp = top.find("spp")) study.spp = readInts(tree, *spp, "spp", 1, 65536);
-    if (const JsonValue* seeds = top.find("seeds")) study.seeds = readInts(tree, *seeds, "seeds", 0, kReferenceSeed - 1);
+    if (const JsonValue* seeds = top.find("seeds"))
+        study.seeds = readInts(tree, *seeds, "seeds", 0, kReferenceSeed - 1);
     study.set = readValues(tree, top.find("set"), "set");
     readReference(tree, top.find("reference"), study.reference);
     readMetrics(tree, top.find("metrics"), study);
     study.metricSettings = readMetricSettings(tree, top.find("metric-settings"));
     study.statistics = readStatistics(tree, top.find("statistics"));
-    if (const JsonValue* stages = top.find("tracing-stages")) study.tracingStages = readTexts(tree, *stages, "tracing-stages");
+    if (const JsonValue* stages = top.find("tracing-stages"))
+        study.tracingStages = readTexts(tree, *stages, "tracing-stages");
     readTuning(tree, top.find("tuning"), study);
     readEntries(tree, top.need("entries"), study);
     checkStatisticTaps(tree, top.find("statistics"), study);
@@ -257,7 +264,10 @@ const StudyStatistic* Study::statistic(const std::string& wanted) const {
 }
 
 bool Study::measures(const std::string& metric) const {
-    return std::count(metrics.begin(), metrics.end(), metric) + std::count(temporalMetrics.begin(), temporalMetrics.end(), metric) > 0 || statistic(metric);
+    return std::count(metrics.begin(), metrics.end(), metric) +
+                   std::count(temporalMetrics.begin(), temporalMetrics.end(), metric) >
+               0 ||
+           statistic(metric);
 }
 
 const std::vector<std::string>& timeQuantities() {
@@ -265,7 +275,9 @@ const std::vector<std::string>& timeQuantities() {
     return names;
 }
 
-bool isTimeQuantity(const std::string& id) { return std::count(timeQuantities().begin(), timeQuantities().end(), id) > 0; }
+bool isTimeQuantity(const std::string& id) {
+    return std::count(timeQuantities().begin(), timeQuantities().end(), id) > 0;
+}
 
 bool StudyCheck::timed() const { return isTimeQuantity(metric) || isTimeQuantity(atEqual); }
 

@@ -12,8 +12,8 @@ std::vector<std::string> studyPresets(const std::filesystem::path& path);
 
 /// Reads a study with a preset: members of the preset take the place of the study's, objects member by member; an empty
 /// name applies none. Every preset is checked, whichever is asked for. Module parameters are checked against the
-/// catalogue; those of the document when a scene is there. Throws Error(BadInput) headed by file:line:column, Error(Usage)
-/// for a preset that the file does not have.
+/// catalogue; those of the document when a scene is there. Throws Error(BadInput) headed by file:line:column,
+/// Error(Usage) for a preset that the file does not have.
 Study loadStudy(const std::filesystem::path& path, const std::string& preset);
 Study parseStudy(const std::string& text, const std::filesystem::path& path, const std::string& preset);
 
@@ -28,8 +28,8 @@ struct StudyListing {
 };
 std::vector<StudyListing> listStudies();
 
-/// A path that exists, or the name of a listed study. Throws Error(Usage) with the nearest name, Error(BadInput) "no such
-/// file".
+/// A path that exists, or the name of a listed study. Throws Error(Usage) with the nearest name, Error(BadInput) "no
+/// such file".
 std::filesystem::path findStudy(const std::string& name);
 
 /// Where a scene of a study is: beside the study file, a built-in name, or `assets:` and a path under

@@ -43,7 +43,8 @@ std::string shownStudy(const std::string& name, const std::string& preset) {
 
 }  // namespace
 
-StudyFolder::StudyFolder(const Study& study, fs::path path) : path_(std::move(path)), study_(study.name), preset_(study.preset) {
+StudyFolder::StudyFolder(const Study& study, fs::path path)
+    : path_(std::move(path)), study_(study.name), preset_(study.preset) {
     std::error_code failure;
     fs::create_directories(path_, failure);
     if (!fs::is_directory(path_, failure)) throwUsage({"cannot be made", path_.string(), "a folder for results", ""});
@@ -63,7 +64,8 @@ void StudyFolder::claim() {
     if (fs::exists(label)) {
         const json found = json::parse(readTextFile(label, 1 << 24), nullptr, false);
         const auto text = [&](const char* key) {
-            return found.is_object() && found.contains(key) && found[key].is_string() ? found[key].get<std::string>() : "";
+            return found.is_object() && found.contains(key) && found[key].is_string() ? found[key].get<std::string>()
+                                                                                      : "";
         };
         if (text("study") != study_ || text("preset") != preset_)
             throwUsage({fmt::format("holds the study {}", shownStudy(text("study"), text("preset"))), path_.string(),
@@ -75,7 +77,8 @@ void StudyFolder::claim() {
     }
     for (const fs::directory_entry& entry : fs::directory_iterator(path_))
         if (const fs::path name = entry.path().filename(); name != ".lock" && !isOurPart(name))
-            throwUsage({fmt::format("holds \"{}\", which no study wrote", name.string()), path_.string(), "an empty folder, or a new one", ""});
+            throwUsage({fmt::format("holds \"{}\", which no study wrote", name.string()), path_.string(),
+                        "an empty folder, or a new one", ""});
     writeLabel();
 }
 
@@ -102,7 +105,8 @@ void StudyFolder::keepOnly(const std::set<std::string>& jobs, const std::set<std
         if (entry.path().extension() == ".tmp") others.push_back(entry.path());
     for (const char* folder : kFolders)
         for (const fs::directory_entry& entry : fs::directory_iterator(path_ / folder, ignored))
-            if (const auto part = unfinishedFile(entry.path().lexically_relative(path_)); part && files_.contains(part->whole.generic_string()))
+            if (const auto part = unfinishedFile(entry.path().lexically_relative(path_));
+                part && files_.contains(part->whole.generic_string()))
                 others.push_back(entry.path());
     for (const std::string& file : files_)
         if (!files.contains(file)) others.push_back(path_ / file);

@@ -7,11 +7,13 @@
 
 namespace lumi {
 
-/// The folder of a study's results, held while this lives; the kernel lets go of it when the process ends, however it ends.
+/// The folder of a study's results, held while this lives; the kernel lets go of it when the process ends, however it
+/// ends.
 ///
-/// `study.json` says whose it is: the study's name and preset. A study that was edited goes on in its folder; another study,
-/// or another preset, is refused, and so is a folder with files that no study wrote. It lists the references, figures and
-/// tables that were written: of these what is left over is removed at the end, and nothing that somebody else put beside them.
+/// `study.json` says whose it is: the study's name and preset. A study that was edited goes on in its folder; another
+/// study, or another preset, is refused, and so is a folder with files that no study wrote. It lists the references,
+/// figures and tables that were written: of these what is left over is removed at the end, and nothing that somebody
+/// else put beside them.
 class StudyFolder {
 public:
     /// Throws Error(Usage): another process works there, it holds another study or strange files, it cannot be written.
@@ -21,8 +23,8 @@ public:
     StudyFolder& operator=(const StudyFolder&) = delete;
 
     const std::filesystem::path& path() const { return path_; }
-    /// Notes references, figures and tables (`tables/all.tex`) as the study's own; to be called before they are written, or
-    /// an interruption leaves files that nobody removes.
+    /// Notes references, figures and tables (`tables/all.tex`) as the study's own; to be called before they are
+    /// written, or an interruption leaves files that nobody removes.
     void note(const std::set<std::string>& files);
     /// Removes jobs that are not named, of the files that were noted those that are not, and what interruptions left.
     void keepOnly(const std::set<std::string>& jobs, const std::set<std::string>& files);

@@ -128,7 +128,8 @@ std::vector<StudyAxis> readAxes(const JsonTree& tree, const JsonValue* section, 
         for (const JsonValue& item : member.value.items) {
             axis.values.push_back(studyValueText(tree, item, member.key));
             if (std::count(axis.values.begin(), axis.values.end(), axis.values.back()) > 1)
-                throwBadInput({fmt::format("\"{}\" has {} twice", member.key, item.shown()), tree.where(item.at), "", ""});
+                throwBadInput(
+                    {fmt::format("\"{}\" has {} twice", member.key, item.shown()), tree.where(item.at), "", ""});
         }
         axes.push_back(std::move(axis));
     }
@@ -153,7 +154,8 @@ StudyFrames readFrames(const JsonTree& tree, const JsonValue* section) {
     }
     frames.temporalMeanFrom = frames.temporalBegin;
     if (const JsonValue* from = reader.find("mean-from"))
-        frames.temporalMeanFrom = readWholes(tree, *from, "mean-from", frames.temporalBegin, frames.temporalEnd - 1).front();
+        frames.temporalMeanFrom =
+            readWholes(tree, *from, "mean-from", frames.temporalBegin, frames.temporalEnd - 1).front();
     if (const JsonValue* step = reader.find("step")) frames.step = readStep(tree, *step, frames);
     frames.still = reader.toggle("still").value_or(false);
     frames.fps = static_cast<float>(reader.number("fps", 0.1, 1000).value_or(0));
@@ -168,8 +170,9 @@ MetricSettings readMetricSettings(const JsonTree& tree, const JsonValue* section
     settings.relMseEpsilon = reader.number("relmse-epsilon", 1e-12, 1e6).value_or(settings.relMseEpsilon);
     if (const JsonValue* range = reader.find("hdr-flip-exposures")) {
         const auto isEv = [](const JsonValue& value) { return value.isNumber() && std::abs(value.number) <= 100; };
-        const bool good = range->isArray() && (range->items.size() == 2 || range->items.size() == 3) && isEv(range->items[0]) &&
-                          isEv(range->items[1]) && range->items[0].number <= range->items[1].number;
+        const bool good = range->isArray() && (range->items.size() == 2 || range->items.size() == 3) &&
+                          isEv(range->items[0]) && isEv(range->items[1]) &&
+                          range->items[0].number <= range->items[1].number;
         if (!good) refuseValue(tree, *range, "hdr-flip-exposures", "[start, stop] or [start, stop, count] in EV");
         settings.flipExposures = FlipExposures::over(range->items[0].number, range->items[1].number);
         if (range->items.size() == 3)
@@ -200,7 +203,8 @@ StudyPictures readPictures(const JsonTree& tree, const JsonValue* section) {
     StudyPictures pictures;
     if (!section) return pictures;
     ObjectReader reader(tree, *section, "pictures");
-    if (const JsonValue* frames = reader.find("frames")) pictures.frames = readWholes(tree, *frames, "frames", 0, kLastFrame);
+    if (const JsonValue* frames = reader.find("frames"))
+        pictures.frames = readWholes(tree, *frames, "frames", 0, kLastFrame);
     if (const JsonValue* spp = reader.find("spp")) pictures.spp = readInts(tree, *spp, "spp", 1, 65536);
     if (const JsonValue* map = reader.find("error-map")) {
         pictures.errorMap = readText(tree, *map, "error-map");

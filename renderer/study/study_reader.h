@@ -37,15 +37,16 @@ std::vector<StudyStatistic> readStatistics(const JsonTree& tree, const JsonValue
 /// Refuses taps that no entry's module has; of a study whose statistics and entries are read.
 void checkStatisticTaps(const JsonTree& tree, const JsonValue* section, const Study& study);
 /// {"statistic": number}, of a study whose statistics are read.
-std::vector<std::pair<std::string, double>> readKnown(const JsonTree& tree, const JsonValue* section, const Study& study);
+std::vector<std::pair<std::string, double>> readKnown(const JsonTree& tree, const JsonValue* section,
+                                                      const Study& study);
 
 MetricSettings readMetricSettings(const JsonTree& tree, const JsonValue* section);
 StudyFrames readFrames(const JsonTree& tree, const JsonValue* section);
 StudyIntervals readIntervals(const JsonTree& tree, const JsonValue* section);
 StudyPictures readPictures(const JsonTree& tree, const JsonValue* section);
 
-/// Throws Error(BadInput) headed by the value's place unless the module takes it. Ids with a dot that the module does not
-/// declare are the document's, and are not checked.
+/// Throws Error(BadInput) headed by the value's place unless the module takes it. Ids with a dot that the module does
+/// not declare are the document's, and are not checked.
 void checkModuleValue(const std::string& module, const StudyValue& value);
 
 /// `base` with the members of `over` in place of its own; objects are merged member by member.

@@ -32,11 +32,14 @@ StudyFigure::Crop readCrop(const JsonTree& tree, const JsonValue& item) {
     ObjectReader reader(tree, item, "crop");
     StudyFigure::Crop crop;
     const JsonValue& box = reader.need("box");
-    const bool numbers = box.isArray() && box.items.size() == 4 &&
-                         std::all_of(box.items.begin(), box.items.end(), [](const JsonValue& v) { return v.isNumber(); });
-    if (numbers) crop.x = box.items[0].number, crop.y = box.items[1].number, crop.width = box.items[2].number, crop.height = box.items[3].number;
-    if (!numbers || crop.x < 0 || crop.y < 0 || !(crop.width > 0) || !(crop.height > 0) || crop.x + crop.width > 1 + 1e-9 ||
-        crop.y + crop.height > 1 + 1e-9)
+    const bool numbers =
+        box.isArray() && box.items.size() == 4 &&
+        std::all_of(box.items.begin(), box.items.end(), [](const JsonValue& v) { return v.isNumber(); });
+    if (numbers)
+        crop.x = box.items[0].number, crop.y = box.items[1].number, crop.width = box.items[2].number,
+        crop.height = box.items[3].number;
+    if (!numbers || crop.x < 0 || crop.y < 0 || !(crop.width > 0) || !(crop.height > 0) ||
+        crop.x + crop.width > 1 + 1e-9 || crop.y + crop.height > 1 + 1e-9)
         refuseValue(tree, box, "box", "[left, top, width, height] as shares of the picture, from 0 to 1");
     crop.name = reader.text("name").value_or("");
     reader.finish();
@@ -75,7 +78,8 @@ void readWhere(const JsonTree& tree, ObjectReader& reader, const Study& study, S
     if (const JsonValue* input = reader.find("input")) figure.input = readEntryName(tree, *input, study, "input");
     if (const JsonValue* entries = reader.find("entries")) {
         readTexts(tree, *entries, "entries");
-        for (const JsonValue& item : entries->items) figure.entries.push_back(readEntryName(tree, item, study, "entries"));
+        for (const JsonValue& item : entries->items)
+            figure.entries.push_back(readEntryName(tree, item, study, "entries"));
     }
     if (const JsonValue* metric = reader.find("metric")) figure.metric = readMapMetric(tree, *metric);
 }
@@ -111,7 +115,8 @@ std::string readQuantity(const JsonTree& tree, const JsonValue& value, const Stu
     for (const StudyStatistic& statistic : study.statistics) known.push_back(statistic.name);
     for (const std::string& time : timeQuantities())
         if (time != "tracing_ns_per_ray" || !study.tracingStages.empty()) known.push_back(time);
-    if (std::find(known.begin(), known.end(), id) == known.end()) refuseName(tree, value.at, "metric of the study", id, known);
+    if (std::find(known.begin(), known.end(), id) == known.end())
+        refuseName(tree, value.at, "metric of the study", id, known);
     return id;
 }
 
@@ -147,10 +152,12 @@ void readAblations(const JsonTree& tree, const JsonValue* section, Study& study)
         for (const JsonValue& stage : stages.items) {
             ablation.stages.push_back(readStage(tree, stage, *study.entry(ablation.entry)));
             const std::string method = ablation.entry + " without " + ablation.stages.back().name;
-            if (study.entry(method)) throwBadInput({fmt::format("an entry is called \"{}\" already", method), tree.where(stage.at), "", ""});
+            if (study.entry(method))
+                throwBadInput({fmt::format("an entry is called \"{}\" already", method), tree.where(stage.at), "", ""});
             for (size_t i = 0; i + 1 < ablation.stages.size(); ++i)
                 if (ablation.stages[i].name == ablation.stages.back().name)
-                    throwBadInput({fmt::format("two stages are called \"{}\"", ablation.stages[i].name), tree.where(stage.at), "", ""});
+                    throwBadInput({fmt::format("two stages are called \"{}\"", ablation.stages[i].name),
+                                   tree.where(stage.at), "", ""});
         }
         reader.finish();
         study.ablations.push_back(std::move(ablation));
@@ -171,11 +178,15 @@ void readChecks(const JsonTree& tree, const JsonValue* section, Study& study) {
         if (const JsonValue* equal = reader.find("at-equal")) check.atEqual = readQuantity(tree, *equal, study);
         if (const JsonValue* against = reader.find("against")) {
             readTexts(tree, *against, "against");
-            for (const JsonValue& name : against->items) check.against.push_back(readUnsweptName(tree, name, study, "against"));
+            for (const JsonValue& name : against->items)
+                check.against.push_back(readUnsweptName(tree, name, study, "against"));
         }
-        if (!check.atEqual.empty() && check.against.empty()) refuseValue(tree, item, "at-equal", "entries under \"against\", which are the curve");
-        const std::optional<double> most = reader.number("at-most", -1e9, 1e9), least = reader.number("at-least", -1e9, 1e9);
-        if (most.has_value() == least.has_value()) refuseValue(tree, item, "check", "either \"at-most\" or \"at-least\"");
+        if (!check.atEqual.empty() && check.against.empty())
+            refuseValue(tree, item, "at-equal", "entries under \"against\", which are the curve");
+        const std::optional<double> most = reader.number("at-most", -1e9, 1e9),
+                                    least = reader.number("at-least", -1e9, 1e9);
+        if (most.has_value() == least.has_value())
+            refuseValue(tree, item, "check", "either \"at-most\" or \"at-least\"");
         check.atLeast = least.has_value();
         check.bound = most ? *most : *least;
         const JsonValue* average = reader.find("on-average");

@@ -22,7 +22,8 @@ bool isTaken(const std::string& name, const std::vector<StudyStatistic>& earlier
 }
 
 /// Where a name must be one of a list.
-std::string readOneOf(const JsonTree& tree, const JsonValue& value, const char* kind, const std::vector<std::string>& names) {
+std::string readOneOf(const JsonTree& tree, const JsonValue& value, const char* kind,
+                      const std::vector<std::string>& names) {
     const std::string name = readText(tree, value, kind);
     if (std::find(names.begin(), names.end(), name) == names.end()) refuseName(tree, value.at, kind, name, names);
     return name;
@@ -37,7 +38,8 @@ void readReduction(const JsonTree& tree, const JsonValue& value, StudyStatistic&
         return;
     }
     ObjectReader reader(tree, value, "of");
-    const std::optional<double> percent = reader.number("percentile", 0, 100), below = reader.number("share-below", -1e9, 1e9),
+    const std::optional<double> percent = reader.number("percentile", 0, 100),
+                                below = reader.number("share-below", -1e9, 1e9),
                                 least = reader.number("share-at-least", -1e9, 1e9);
     if (percent.has_value() + below.has_value() + least.has_value() != 1)
         refuseValue(tree, value, "of", "one of \"percentile\", \"share-below\" and \"share-at-least\"");
@@ -60,13 +62,17 @@ std::string reductionText(const StudyStatistic& statistic) {
 
 std::string definitionOf(const StudyStatistic& statistic) {
     if (!statistic.tap.empty())
-        return fmt::format("The {} of the method's buffer {}{}, over its pixels that are finite.", reductionText(statistic), statistic.tap,
+        return fmt::format("The {} of the method's buffer {}{}, over its pixels that are finite.",
+                           reductionText(statistic), statistic.tap,
                            statistic.channel.empty() ? "" : "." + statistic.channel);
     if (!statistic.metric.empty())
-        return fmt::format("{} against a reference of {} samples a pixel, its own error included.", findMetric(statistic.metric).title, statistic.referenceSpp);
+        return fmt::format("{} against a reference of {} samples a pixel, its own error included.",
+                           findMetric(statistic.metric).title, statistic.referenceSpp);
     if (!statistic.rays.empty())
-        return fmt::format("Rays a pixel that the method traced itself{}.", statistic.rays == "all" ? "" : ", of the kind " + statistic.rays);
-    if (statistic.memory) return "Bytes a pixel that the method holds between frames and to work on them, without threads' scratch.";
+        return fmt::format("Rays a pixel that the method traced itself{}.",
+                           statistic.rays == "all" ? "" : ", of the kind " + statistic.rays);
+    if (statistic.memory)
+        return "Bytes a pixel that the method holds between frames and to work on them, without threads' scratch.";
     return fmt::format("{} divided by {}.", statistic.over, statistic.under);
 }
 
@@ -76,12 +82,15 @@ StudyStatistic readStatistic(const JsonTree& tree, const JsonValue& item, const 
     const JsonValue& name = reader.need("name");
     statistic.name = readText(tree, name, "name");
     checkFileName(tree, name, statistic.name);
-    if (isTaken(statistic.name, earlier)) throwBadInput({fmt::format("\"{}\" is the name of something else", statistic.name), tree.where(name.at), "", ""});
+    if (isTaken(statistic.name, earlier))
+        throwBadInput(
+            {fmt::format("\"{}\" is the name of something else", statistic.name), tree.where(name.at), "", ""});
     statistic.title = reader.text("title").value_or(statistic.name);
     statistic.higherIsBetter = reader.toggle("higher-is-better").value_or(false);
     int kinds = 0;
     for (const char* kind : kKinds) kinds += reader.find(kind) != nullptr;
-    if (kinds != 1) refuseValue(tree, item, "statistic", "one of \"tap\", \"metric\", \"rays\", \"memory\" and \"over\"");
+    if (kinds != 1)
+        refuseValue(tree, item, "statistic", "one of \"tap\", \"metric\", \"rays\", \"memory\" and \"over\"");
     if (const JsonValue* tap = reader.find("tap")) {
         statistic.tap = readText(tree, *tap, "tap");
         statistic.channel = reader.text("channel").value_or("");
@@ -93,9 +102,11 @@ StudyStatistic readStatistic(const JsonTree& tree, const JsonValue& item, const 
         statistic.metric = readOneOf(tree, *metric, "metric", ids);
         const JsonValue& spp = reader.need("reference-spp");
         statistic.referenceSpp = readInts(tree, spp, "reference-spp", 32, 1 << 20).front();
-        if (statistic.referenceSpp % 32) refuseValue(tree, spp, "reference-spp", "a multiple of 32: two halves of whole blocks of 16");
+        if (statistic.referenceSpp % 32)
+            refuseValue(tree, spp, "reference-spp", "a multiple of 32: two halves of whole blocks of 16");
     }
-    if (const JsonValue* rays = reader.find("rays")) statistic.rays = readOneOf(tree, *rays, "rays", {"camera", "bounce", "shadow", "all"});
+    if (const JsonValue* rays = reader.find("rays"))
+        statistic.rays = readOneOf(tree, *rays, "rays", {"camera", "bounce", "shadow", "all"});
     if (const JsonValue* memory = reader.find("memory")) {
         statistic.memory = reader.toggle("memory").value_or(false);
         if (!statistic.memory) refuseValue(tree, *memory, "memory", "true");
@@ -136,7 +147,8 @@ void checkStatisticTaps(const JsonTree& tree, const JsonValue* section, const St
     }
 }
 
-std::vector<std::pair<std::string, double>> readKnown(const JsonTree& tree, const JsonValue* section, const Study& study) {
+std::vector<std::pair<std::string, double>> readKnown(const JsonTree& tree, const JsonValue* section,
+                                                      const Study& study) {
     std::vector<std::pair<std::string, double>> known;
     if (!section) return known;
     if (!section->isObject()) refuseValue(tree, *section, "known", "an object");

@@ -24,7 +24,8 @@ void addMeans(const Study& study, const StudyPlan& plan, const StudyRowIndex& ro
                         const std::vector<double> values = unitValues(study, rows, scene, method, spp, metric, frame);
                         if (values.empty()) return;
                         list.push_back({scene, method, spp, metric, frame, intervalOf(study, values),
-                                        finiteMean(unitValues(study, rows, scene, method, spp, metric, frame, ValueKind::Measured)),
+                                        finiteMean(unitValues(study, rows, scene, method, spp, metric, frame,
+                                                              ValueKind::Measured)),
                                         countMissing(values)});
                     };
                     add(-1, all.metrics);
@@ -48,7 +49,8 @@ void addRankings(const Study& study, const StudyPlan& plan, const StudyRowIndex&
                 }
                 if (methods.size() < 2) continue;
                 const bool higher = higherIsBetter(study, metric);
-                const std::vector<Rank> ranks = rankMethods(values, higher, study.intervals.level, intervalMethod(study));
+                const std::vector<Rank> ranks =
+                    rankMethods(values, higher, study.intervals.level, intervalMethod(study));
                 std::vector<size_t> order(methods.size());
                 for (size_t i = 0; i < order.size(); ++i) order[i] = i;
                 std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
@@ -58,9 +60,10 @@ void addRankings(const Study& study, const StudyPlan& plan, const StudyRowIndex&
                 StudyRanking ranking{scene, spp, metric, {}};
                 for (const size_t i : order)
                     ranking.places.push_back({methods[i], ranks[i],
-                                              i == order[0] ? Interval{}
-                                                            : pairedInterval(values[i], values[order[0]], study.intervals.level,
-                                                                             intervalMethod(study))});
+                                              i == order[0]
+                                                  ? Interval{}
+                                                  : pairedInterval(values[i], values[order[0]], study.intervals.level,
+                                                                   intervalMethod(study))});
                 all.rankings.push_back(std::move(ranking));
             }
 }
@@ -94,16 +97,16 @@ void addEquivalents(const Study& study, const StudyPlan& plan, const StudyRowInd
             for (size_t other = 0; other < plan.methods.size(); ++other)
                 for (const size_t scene : rows.scenes())
                     for (const std::string& metric : study.metrics) {
-                        if (study.entries[plan.methods[method].entry].name != pair.entry ||
-                            pair.against.size() != 1 || study.entries[plan.methods[other].entry].name != pair.against[0] || scene == kAllScenes ||
-                            plan.methods[method].whole || plan.methods[other].whole ||
-                            !isSquaredError(metric))
+                        if (study.entries[plan.methods[method].entry].name != pair.entry || pair.against.size() != 1 ||
+                            study.entries[plan.methods[other].entry].name != pair.against[0] || scene == kAllScenes ||
+                            plan.methods[method].whole || plan.methods[other].whole || !isSquaredError(metric))
                             continue;
                         const std::vector<SeedCurve> own = seedCurves(study, rows, scene, method, metric);
                         const std::vector<SeedCurve> against = seedCurves(study, rows, scene, other, metric);
                         if (own.empty() || own[0].spp.empty() || against[0].spp.empty()) continue;
                         for (size_t point = 0; point < own[0].spp.size(); ++point) {
-                            StudyEquivalent result{scene, method, other, static_cast<int>(own[0].spp[point]), metric, {}, false};
+                            StudyEquivalent result{scene,  method, other, static_cast<int>(own[0].spp[point]),
+                                                   metric, {},     false};
                             std::vector<double> samples;
                             for (size_t seed = 0; seed < own.size(); ++seed)
                                 samples.push_back(samplesFor(against[seed], own[seed].value[point], metric == "rmse",
@@ -125,7 +128,8 @@ void addStages(const Study& study, const StudyPlan& plan, const StudyRowIndex& r
                     const std::vector<double> with = unitValues(study, rows, scene, whole, spp, metric);
                     const std::vector<double> without = unitValues(study, rows, scene, method, spp, metric);
                     if (with.empty() || without.empty()) continue;
-                    all.stages.push_back({scene, whole, method, spp, metric, intervalOf(study, with), intervalOf(study, without),
+                    all.stages.push_back({scene, whole, method, spp, metric, intervalOf(study, with),
+                                          intervalOf(study, without),
                                           pairedInterval(without, with, study.intervals.level, intervalMethod(study))});
                 }
             }

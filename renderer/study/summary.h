@@ -27,7 +27,8 @@ struct StudyRanking {
     struct Place {
         size_t method = 0;
         Rank rank;
-        Interval toBest;  ///< paired difference to the method with the best mean, over the units where both have a value; not known for that one itself
+        Interval
+            toBest;  ///< paired difference to the method with the best mean, over the units where both have a value; not known for that one itself
     };
     std::vector<Place> places;  ///< best mean first
 };
@@ -38,11 +39,11 @@ struct StudyBias {
     int spp = 1;
     int seeds = 0;
     BiasVariance parts;
-    double biasShare = 0;       ///< of the mean squared error; NaN if that is not above 0
-    Interval meanSquaredError;  ///< over seeds
+    double biasShare = 0;                   ///< of the mean squared error; NaN if that is not above 0
+    Interval meanSquaredError;              ///< over seeds
     Interval squaredBias, variance, share;  ///< jackknife over seeds: from three on
-    int64_t pixels = 0;         ///< that count: finite in every image and the reference, over all frames
-    int64_t pixelsLeftOut = 0;  ///< the others
+    int64_t pixels = 0;                     ///< that count: finite in every image and the reference, over all frames
+    int64_t pixelsLeftOut = 0;              ///< the others
 };
 
 /// Pixels that are NaN or infinite in the images of a method, or in their reference. They count in no metric.

@@ -28,7 +28,8 @@ const std::vector<TemporalMetric>& temporalMetricCatalog() {
     static const std::vector<TemporalMetric> catalog = [] {
         std::vector<TemporalMetric> list;
         for (const SequenceMetric& metric : sequenceMetricCatalog())
-            list.push_back({metric.id, metric.title, metric.definition, measureOf(metric.id), metric.id == std::string("temporal_reprojected")});
+            list.push_back({metric.id, metric.title, metric.definition, measureOf(metric.id),
+                            metric.id == std::string("temporal_reprojected")});
         return list;
     }();
     return catalog;

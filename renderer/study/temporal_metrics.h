@@ -10,7 +10,8 @@ namespace lumi {
 struct TemporalInput {
     const Image& image;
     const Image& previous;
-    const Signals* geometry = nullptr;          ///< of the later frame, with temporalSignals(); null for metrics that follow nothing
+    /// of the later frame, with temporalSignals(); null for metrics that follow nothing
+    const Signals* geometry = nullptr;
     const Signals* previousGeometry = nullptr;
     float exposureEv = 0;
 };

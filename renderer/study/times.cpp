@@ -50,21 +50,25 @@ std::vector<StudyMeanTime> meanTimes(const Study& study, const StudyRecords& rec
                 return found == time.stagesMs.end() ? 0 : found->second;
             });
         for (const int seed : study.seeds) {
-            const auto own = std::find_if(times.begin(), times.end(), [&](const StudyTime* time) { return time->seed == seed; });
+            const auto own =
+                std::find_if(times.begin(), times.end(), [&](const StudyTime* time) { return time->seed == seed; });
             const StudyTime* time = own == times.end() ? nullptr : *own;
             mean.frameMsBySeed.push_back(time ? time->frameMs() : kNaN);
             mean.runMsBySeed.push_back(time ? time->runMs : kNaN);
-            mean.nsPerRayBySeed.push_back(time && time->raysPerFrame > 0 ? 1e6 * (time->traceMs + time->runMs) / time->raysPerFrame : kNaN);
+            mean.nsPerRayBySeed.push_back(
+                time && time->raysPerFrame > 0 ? 1e6 * (time->traceMs + time->runMs) / time->raysPerFrame : kNaN);
             mean.tracingNsPerRayBySeed.push_back(time ? tracingNsPerRay(*time, study.tracingStages) : kNaN);
         }
         mean.nsPerRay = meanInterval(mean.nsPerRayBySeed, study.intervals.level);
-        if (!study.tracingStages.empty()) mean.tracingNsPerRay = meanInterval(mean.tracingNsPerRayBySeed, study.intervals.level);
+        if (!study.tracingStages.empty())
+            mean.tracingNsPerRay = meanInterval(mean.tracingNsPerRayBySeed, study.intervals.level);
         means.push_back(std::move(mean));
     }
     return means;
 }
 
-/// A seed's time and metric at each of a method's sample counts; neither need rise or fall all the way, for both have noise.
+/// A seed's time and metric at each of a method's sample counts; neither need rise or fall all the way, for both have
+/// noise.
 struct TimeCurve {
     std::vector<double> ms, value;
 };
@@ -94,17 +98,19 @@ struct SeedEqual {
 };
 
 SeedEqual equalOf(const TimeCurve& other, double ms, double value, bool higher) {
-    return {logLogAt(other.ms, other.value, ms), logLogAt(other.value, other.ms, value, higher ? Course::Rising : Course::Falling)};
+    return {logLogAt(other.ms, other.value, ms),
+            logLogAt(other.value, other.ms, value, higher ? Course::Rising : Course::Falling)};
 }
 
 /// `others`: one method, or several that are one at several costs.
-void addPair(const Study& study, const StudyPlan& plan, const StudyRowIndex& rows, const StudyMeanTime& time, const std::vector<size_t>& others,
-             const std::string& metric, StudyTimes& times) {
+void addPair(const Study& study, const StudyPlan& plan, const StudyRowIndex& rows, const StudyMeanTime& time,
+             const std::vector<size_t>& others, const std::string& metric, StudyTimes& times) {
     const std::vector<SeedCurve> own = seedCurves(study, rows, time.scene, time.method, metric);
     const auto curveOf = [&](size_t seed) {
         TimeCurve all;
         for (const size_t other : others) {
-            const TimeCurve part = timeCurve(times, seedCurves(study, rows, time.scene, other, metric)[seed], time.scene, other, seed);
+            const TimeCurve part =
+                timeCurve(times, seedCurves(study, rows, time.scene, other, metric)[seed], time.scene, other, seed);
             all.ms.insert(all.ms.end(), part.ms.begin(), part.ms.end());
             all.value.insert(all.value.end(), part.value.begin(), part.value.end());
         }
@@ -115,7 +121,8 @@ void addPair(const Study& study, const StudyPlan& plan, const StudyRowIndex& row
     for (size_t seed = 0; seed < study.seeds.size(); ++seed) {
         const auto point = std::find(own[seed].spp.begin(), own[seed].spp.end(), time.spp);
         if (point == own[seed].spp.end()) continue;
-        const double value = own[seed].value[static_cast<size_t>(point - own[seed].spp.begin())], ms = time.frameMsBySeed[seed];
+        const double value = own[seed].value[static_cast<size_t>(point - own[seed].spp.begin())],
+                     ms = time.frameMsBySeed[seed];
         const SeedEqual equal = equalOf(curveOf(seed), ms, value, higherIsBetter(study, metric));
         values.push_back(value);
         atTime.push_back(equal.otherAtTime);
@@ -129,22 +136,27 @@ void addPair(const Study& study, const StudyPlan& plan, const StudyRowIndex& row
     };
     std::string names;
     for (const size_t other : others) names += (names.empty() ? "" : ", ") + plan.methods[other].name;
-    times.pairs.push_back({time.scene, time.method, names, time.spp, metric, time.frameMs, interval(values), interval(atTime),
-                           interval(differences), interval(otherMs), interval(ratios)});
+    times.pairs.push_back({time.scene, time.method, names, time.spp, metric, time.frameMs, interval(values),
+                           interval(atTime), interval(differences), interval(otherMs), interval(ratios)});
 }
 
 void addPairs(const Study& study, const StudyPlan& plan, const StudyRowIndex& rows, StudyTimes& times) {
     for (const StudyPair& pair : study.pairs)
         for (const StudyMeanTime& time : times.methods) {
-            if (study.entries[plan.methods[time.method].entry].name != pair.entry || plan.methods[time.method].whole) continue;
+            if (study.entries[plan.methods[time.method].entry].name != pair.entry || plan.methods[time.method].whole)
+                continue;
             std::vector<std::vector<size_t>> curves(pair.against.size() > 1 ? 1 : 0);
             for (size_t other = 0; other < plan.methods.size(); ++other) {
-                if (!std::count(pair.against.begin(), pair.against.end(), study.entries[plan.methods[other].entry].name) || plan.methods[other].whole) continue;
+                if (!std::count(pair.against.begin(), pair.against.end(),
+                                study.entries[plan.methods[other].entry].name) ||
+                    plan.methods[other].whole)
+                    continue;
                 if (pair.against.size() > 1) curves[0].push_back(other);
                 else curves.push_back({other});
             }
             for (const std::vector<size_t>& others : curves)
-                for (const std::string& metric : allMetrics(study)) addPair(study, plan, rows, time, others, metric, times);
+                for (const std::string& metric : allMetrics(study))
+                    addPair(study, plan, rows, time, others, metric, times);
         }
 }
 

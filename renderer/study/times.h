@@ -14,17 +14,19 @@ struct StudyMeanTime {
     Interval frameMs, poseMs, buildMs, traceMs, runMs, raysPerFrame;
     std::map<std::string, Interval> stagesMs;  ///< of run()
     std::vector<double> frameMsBySeed;         ///< in the study's order; NaN where the seed did not run
-    std::vector<double> runMsBySeed, nsPerRayBySeed;  ///< the same; of run(), and of trace and run() over all their rays
-    std::vector<double> tracingNsPerRayBySeed;        ///< the same, of trace and the study's tracing stages; NaN if the method has none
+    std::vector<double> runMsBySeed,
+        nsPerRayBySeed;  ///< the same; of run(), and of trace and run() over all their rays
+    std::vector<double>
+        tracingNsPerRayBySeed;  ///< the same, of trace and the study's tracing stages; NaN if the method has none
     Interval nsPerRay, tracingNsPerRay;
 
     /// By a time quantity's id (isTimeQuantity()).
     const std::vector<double>& bySeed(const std::string& quantity) const;
 };
 
-/// What the other of a pair reaches in a method's time, and how long it takes to reach its value; by straight lines between
-/// the other's sample counts, in log-log space, between the largest ones that enclose it. Of seeds where the other's sample counts do not reach so far nothing is
-/// known; the counts say how many those are.
+/// What the other of a pair reaches in a method's time, and how long it takes to reach its value; by straight lines
+/// between the other's sample counts, in log-log space, between the largest ones that enclose it. Of seeds where the
+/// other's sample counts do not reach so far nothing is known; the counts say how many those are.
 struct StudyEqual {
     size_t scene = 0, method = 0;
     std::string against;  ///< a method's name, or those of a pair's entries

@@ -40,7 +40,8 @@ Json pairJson(const Study& study, const StudyPlan& plan, const StudyEqual& equal
 
 }  // namespace
 
-Json timingsJson(const Study& study, const StudyPlan& plan, const StudyTimes& times, const std::vector<StudyCheckResult>& checks) {
+Json timingsJson(const Study& study, const StudyPlan& plan, const StudyTimes& times,
+                 const std::vector<StudyCheckResult>& checks) {
     Json all = {{"rows", Json::array()}, {"pairs", Json::array()}, {"ablations", Json::array()}};
     for (const StudyMeanTime& time : times.methods) all["rows"].push_back(rowJson(study, plan, time));
     for (const StudyEqual& equal : times.pairs) all["pairs"].push_back(pairJson(study, plan, equal));

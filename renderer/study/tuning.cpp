@@ -18,7 +18,8 @@ std::optional<double> numberOf(const std::string& text) {
     }
 }
 
-/// Part of the value that a later round has to gain to move: parameters that hardly matter would lead through the whole grid.
+/// Part of the value that a later round has to gain to move: parameters that hardly matter would lead through the whole
+/// grid.
 constexpr double kLeastGain = 0.001;
 
 /// The values of every place that was measured.
@@ -91,10 +92,12 @@ std::vector<StudyValue> tuningValues(const std::vector<StudyAxis>& axes, const T
     return values;
 }
 
-std::vector<std::string> tunedToAnEnd(const std::vector<StudyAxis>& axes, const std::vector<std::pair<std::string, std::string>>& values) {
+std::vector<std::string> tunedToAnEnd(const std::vector<StudyAxis>& axes,
+                                      const std::vector<std::pair<std::string, std::string>>& values) {
     std::vector<std::string> ids;
     for (const StudyAxis& axis : axes) {
-        const auto chosen = std::find_if(values.begin(), values.end(), [&](const auto& value) { return value.first == axis.id; });
+        const auto chosen =
+            std::find_if(values.begin(), values.end(), [&](const auto& value) { return value.first == axis.id; });
         std::vector<double> numbers;
         for (const std::string& text : axis.values)
             if (const auto number = numberOf(text)) numbers.push_back(*number);

@@ -95,7 +95,8 @@ std::string definitionOf(const Study& study, const std::string& metric) {
     std::string text = temporal ? temporal->definition : findMetric(metric).definition;
     if (metric == "relmse") text += fmt::format(" Here epsilon is {:g}.", study.metricSettings.relMseEpsilon);
     if (const auto& range = study.metricSettings.flipExposures; range && metric == "hdr_flip")
-        text += fmt::format(" Here the exposures are {} from {:g} to {:g} EV.", range->count, range->start, range->stop);
+        text +=
+            fmt::format(" Here the exposures are {} from {:g} to {:g} EV.", range->count, range->start, range->stop);
     if (isSquaredError(metric)) text += " The reference's own error is taken off.";
     return text;
 }
@@ -103,7 +104,8 @@ std::string definitionOf(const Study& study, const std::string& metric) {
 std::string titleOf(const Study& study, const std::string& metric) {
     if (const StudyStatistic* statistic = study.statistic(metric)) return statistic->title;
     if (metric == "tracing_ns_per_ray") return "ns a ray, tracing alone";
-    if (isTimeQuantity(metric)) return metric == "frame_ms" ? "ms a frame" : metric == "run_ms" ? "ms of the method" : "ns a ray, whole frame";
+    if (isTimeQuantity(metric))
+        return metric == "frame_ms" ? "ms a frame" : metric == "run_ms" ? "ms of the method" : "ns a ray, whole frame";
     const TemporalMetric* temporal = findTemporalMetric(metric);
     return temporal ? temporal->title : findMetric(metric).title;
 }
@@ -115,7 +117,8 @@ bool higherIsBetter(const Study& study, const std::string& metric) {
 }
 
 IntervalMethod intervalMethod(const Study& study) {
-    return study.intervals.method == StudyIntervals::Method::Bootstrap ? IntervalMethod::Bootstrap : IntervalMethod::StudentT;
+    return study.intervals.method == StudyIntervals::Method::Bootstrap ? IntervalMethod::Bootstrap
+                                                                       : IntervalMethod::StudentT;
 }
 
 }  // namespace lumi

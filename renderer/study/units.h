@@ -18,8 +18,8 @@ class StudyRowIndex {
 public:
     explicit StudyRowIndex(const StudyRecords& records);
     const std::vector<const StudyRow*>& of(size_t method, int spp) const;
-    const std::vector<int>& spp() const { return spp_; }            ///< ascending
-    const std::vector<size_t>& scenes() const { return scenes_; }   ///< kAllScenes last, where there are several
+    const std::vector<int>& spp() const { return spp_; }           ///< ascending
+    const std::vector<size_t>& scenes() const { return scenes_; }  ///< kAllScenes last, where there are several
 
 private:
     std::map<std::pair<size_t, int>, std::vector<const StudyRow*>> rows_;
@@ -31,8 +31,8 @@ private:
 enum class ValueKind { Corrected, Measured };
 
 /// Values of a metric by unit: a seed, or a frame and seed. The units are the study's, in one order for all methods, so
-/// that values of two methods at one place belong together. NaN where any image of the unit has no value: a mean over what
-/// is left would be of something else. Empty if the method was not measured so. `frame` -1: all.
+/// that values of two methods at one place belong together. NaN where any image of the unit has no value: a mean over
+/// what is left would be of something else. Empty if the method was not measured so. `frame` -1: all.
 std::vector<double> unitValues(const Study& study, const StudyRowIndex& rows, size_t scene, size_t method, int spp,
                                const std::string& metric, int64_t frame = -1, ValueKind kind = ValueKind::Corrected);
 

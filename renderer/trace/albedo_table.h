@@ -86,7 +86,8 @@ auto meanOverColumns(float alpha, const Value& valueAt) {
     float previous = 1;
     for (int i = 0; i < kSteps; ++i) {
         const auto columnAt = [](float x) { return 1 - x * x; };
-        const float next = i + 1 < kSteps ? FacetView::cosineAt(columnAt(static_cast<float>(i + 1) / kSteps), alpha) : 0;
+        const float next =
+            i + 1 < kSteps ? FacetView::cosineAt(columnAt(static_cast<float>(i + 1) / kSteps), alpha) : 0;
         const float middle = FacetView::cosineAt(columnAt((static_cast<float>(i) + 0.5f) / kSteps), alpha);
         sum += (previous * previous - next * next) * valueAt(FacetView(alpha, middle));
         previous = next;

@@ -112,7 +112,8 @@ void AnisotropicAlbedo::tabulateAverage() {
 
 Vec2 AnisotropicAlbedo::difference(RoughnessRow x, RoughnessRow y, float column, float azimuth) const {
     const float along = column * (kColumns - 1), sector = std::clamp(azimuth, 0.0f, 1.0f) * (kAzimuths - 1);
-    const int c = std::clamp(static_cast<int>(along), 0, kColumns - 2), a = std::min(static_cast<int>(sector), kAzimuths - 2);
+    const int c = std::clamp(static_cast<int>(along), 0, kColumns - 2),
+              a = std::min(static_cast<int>(sector), kAzimuths - 2);
     const float fc = along - static_cast<float>(c), fa = sector - static_cast<float>(a);
     Vec2 sum(0);
     for (int i = 0; i < 4; ++i) {
@@ -138,8 +139,11 @@ Vec2 AnisotropicAlbedo::directional(const Ggx& ggx, const Vec3& w) const {
 
 Vec2 AnisotropicAlbedo::average(const Ggx& ggx) const {
     const RoughnessRow x = evenRow(roughnessX(ggx), kMeanRows), y = evenRow(roughnessY(ggx), kMeanRows);
-    const auto at = [&](int dx, int dy) { return average_[static_cast<size_t>((x.row + dx) * kMeanRows + y.row + dy)]; };
-    const Vec2 mean = glm::mix(glm::mix(at(0, 0), at(1, 0), x.fraction), glm::mix(at(0, 1), at(1, 1), x.fraction), y.fraction);
+    const auto at = [&](int dx, int dy) {
+        return average_[static_cast<size_t>((x.row + dx) * kMeanRows + y.row + dy)];
+    };
+    const Vec2 mean =
+        glm::mix(glm::mix(at(0, 0), at(1, 0), x.fraction), glm::mix(at(0, 1), at(1, 1), x.fraction), y.fraction);
     return {1 - mean.x * meanSquare(ggx) - mean.y, mean.y};
 }
 

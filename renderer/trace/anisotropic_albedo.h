@@ -8,9 +8,9 @@ namespace lumi {
 
 /// SchlickAlbedo of stretched facets: over the roughness along x and along y, and the direction as the facets see it
 /// (FacetView's column, and an azimuth half way between the true and the stretched one). What is tabled is the
-/// difference to isotropic facets whose squared ggxAlpha is the mean of both, which varies slowly.
-/// The pair's sum is off by less than 0.005, and too small by less than 0.001; how it divides into the pair by less than
-/// 0.08 where light grazes along the smooth direction, and little elsewhere.
+/// difference to isotropic facets whose squared ggxAlpha is the mean of both, which varies slowly. The pair's sum is
+/// off by less than 0.005, and too small by less than 0.001; how it divides into the pair by less than 0.08 where light
+/// grazes along the smooth direction, and little elsewhere.
 class AnisotropicAlbedo {
 public:
     /// Made at first use (some 300 ms); any thread.

@@ -49,9 +49,7 @@ Vec2 BaseBsdf::schlickAverage() const {
 }
 
 /// Looked up once for all lobes of a direction.
-Vec2 BaseBsdf::schlickWhereUsed(const Vec3& w) const {
-    return usesSchlick_ && w.z > 0 ? schlickAlbedo(w) : Vec2(1, 0);
-}
+Vec2 BaseBsdf::schlickWhereUsed(const Vec3& w) const { return usesSchlick_ && w.z > 0 ? schlickAlbedo(w) : Vec2(1, 0); }
 
 /// What a rough boundary gives back of what it loses to second facets, for light from `w` on either side.
 float BaseBsdf::boundaryReturned(const Vec3& w) const {
@@ -97,8 +95,8 @@ LobeValue BaseBsdf::reflection(const Vec3& wi, const Vec3& h, Vec2 schlick) cons
     if (multipleShare_ > 0) {
         if (!isBlack(multipleScale_)) value.f += multipleScale_ * (multipleBelow(schlick) * wi.z);
         if (!isBlack(boundaryScale_)) value.f += boundaryScale_ * (boundaryReturned(wi) * wi.z);
-        value.pdf = (1 - multipleShare_) * value.pdf +
-                    multipleShare_ * (1 - multipleThrough_) * pdfCosineHemisphere(wi.z);
+        value.pdf =
+            (1 - multipleShare_) * value.pdf + multipleShare_ * (1 - multipleThrough_) * pdfCosineHemisphere(wi.z);
     }
     return value;
 }
@@ -240,7 +238,9 @@ Vec3 BaseBsdf::albedo(Lobe lobe) const {
 }
 
 float BaseBsdf::probability(Lobe lobe) const {
-    return lobe == Lobe::None || lobe > Lobe::SpecularTransmission ? 0 : probability_[static_cast<int>(lobe) - static_cast<int>(Lobe::Diffuse)];
+    return lobe == Lobe::None || lobe > Lobe::SpecularTransmission
+               ? 0
+               : probability_[static_cast<int>(lobe) - static_cast<int>(Lobe::Diffuse)];
 }
 
 bool BaseBsdf::isDelta() const {

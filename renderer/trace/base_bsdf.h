@@ -104,39 +104,39 @@ private:
 
     Vec3 wo_{0, 0, 1};
     Ggx ggx_;
-    RoughnessRow row_;           ///< of all albedo tables
-    float lambdaO_ = 0;          ///< ggx_.lambda(wo_)
-    Vec2 schlickO_{1, 0};        ///< albedo towards wo under Schlick's term
-    Vec2 schlickMean_{1, 0};     ///< and its mean over the hemisphere; where something uses it
-    bool usesSchlick_ = false;   ///< the lobes depend on the albedo towards wi
-    float eta_ = 1;              ///< index of the far side over that of wo's side
-    bool smooth_ = false;        ///< reflection is a delta
+    RoughnessRow row_;          ///< of all albedo tables
+    float lambdaO_ = 0;         ///< ggx_.lambda(wo_)
+    Vec2 schlickO_{1, 0};       ///< albedo towards wo under Schlick's term
+    Vec2 schlickMean_{1, 0};    ///< and its mean over the hemisphere; where something uses it
+    bool usesSchlick_ = false;  ///< the lobes depend on the albedo towards wi
+    float eta_ = 1;             ///< index of the far side over that of wo's side
+    bool smooth_ = false;       ///< reflection is a delta
     bool deltaTransmission_ = false;
     bool solid_ = false;
-    bool hasBoundary_ = false;   ///< the base transmits: the exact Fresnel term takes part
+    bool hasBoundary_ = false;                ///< the base transmits: the exact Fresnel term takes part
     const DielectricAlbedo* near_ = nullptr;  ///< of a rough solid, on wo's side
     const DielectricAlbedo* far_ = nullptr;
-    RoughnessRow boundaryRow_;   ///< of their tables
+    RoughnessRow boundaryRow_;  ///< of their tables
 
-    Vec3 diffuseScale_{0};       ///< rho (1 - E(wo)) / (1 - Eavg) / pi
+    Vec3 diffuseScale_{0};              ///< rho (1 - E(wo)) / (1 - Eavg) / pi
     float layerF0_ = 0, layerF90_ = 0;  ///< of the dielectric layer over the diffuse base
-    float layerMultiple_ = 0;    ///< m of that layer
-    Vec3 multiple_{0};           ///< m of reflection, its share of the material multiplied in
-    Vec3 multipleScale_{0};      ///< multiple_ (1 - E1(wo)) over pi (1 - E1avg)
-    Vec3 boundaryScale_{0};      ///< the same of what a boundary reflects after many facets, and of what it transmits
+    float layerMultiple_ = 0;           ///< m of that layer
+    Vec3 multiple_{0};                  ///< m of reflection, its share of the material multiplied in
+    Vec3 multipleScale_{0};             ///< multiple_ (1 - E1(wo)) over pi (1 - E1avg)
+    Vec3 boundaryScale_{0};  ///< the same of what a boundary reflects after many facets, and of what it transmits
     Vec3 throughScale_{0};
-    Vec3 multipleAlbedo_{0};     ///< of both reflected parts, over what facets reflect once
-    Vec3 throughAlbedo_{0};      ///< and of the transmitted part
-    Vec3 f0_{0};                 ///< Schlick part of reflection, its shares of the material multiplied in
+    Vec3 multipleAlbedo_{0};  ///< of both reflected parts, over what facets reflect once
+    Vec3 throughAlbedo_{0};   ///< and of the transmitted part
+    Vec3 f0_{0};              ///< Schlick part of reflection, its shares of the material multiplied in
     float f90_ = 0;
-    Vec3 boundaryTint_{0};       ///< weight of the exact Fresnel term in reflection
-    Vec3 transmissionTint_{0};   ///< and of what it lets through
+    Vec3 boundaryTint_{0};      ///< weight of the exact Fresnel term in reflection
+    Vec3 transmissionTint_{0};  ///< and of what it lets through
 
     bool hasFilm_ = false;
     ThinFilm film_;
-    float filmShare_ = 0;        ///< of the surface
-    float filmReflecting_ = 0;   ///< share of the material that reflects under the film
-    Vec3 filmAlbedo_{0};         ///< mean reflectance of the film over what facets reflect towards wo
+    float filmShare_ = 0;       ///< of the surface
+    float filmReflecting_ = 0;  ///< share of the material that reflects under the film
+    Vec3 filmAlbedo_{0};        ///< mean reflectance of the film over what facets reflect towards wo
 
     Vec3 albedo_[kSlots] = {Vec3(0), Vec3(0), Vec3(0)};
     float probability_[kSlots] = {0, 0, 0};

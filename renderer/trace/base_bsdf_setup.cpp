@@ -38,7 +38,7 @@ float schlickMean(float f0, float f90) { return f0 + (f90 - f0) / 21; }
 
 /// Sums over facets, for the albedos of a film.
 struct FilmSums {
-    Vec3 reflected{0};                        ///< by the film, of what leaves the facets
+    Vec3 reflected{0};                            ///< by the film, of what leaves the facets
     float all = 0, through = 0, bareThrough = 0;  ///< all of that; what a boundary transmits under the film, and bare
     explicit FilmSums(float = 0) {}
     FilmSums& operator+=(const FilmSums& o) {
@@ -69,7 +69,8 @@ BaseBsdf::BaseBsdf(const BsdfInputs& inputs, const Vec3& wo) : wo_(usableDirecti
     f90_ = opaque * specular + metallic;
     const bool inside = solid_ && !inputs.entering;
     if (inputs.layered && inputs.layers.iridescence > 0 && !inside)
-        setFilm(inputs.layers, (1 - metallic) * layerF0 + metallic * baseColor, opaque * specular + metallic + boundary);
+        setFilm(inputs.layers, (1 - metallic) * layerF0 + metallic * baseColor,
+                opaque * specular + metallic + boundary);
     const bool multiple = inputs.multipleScattering && !smooth_;
     usesSchlick_ = opaque > 0 || (multiple && metallic > 0);
     if (usesSchlick_ || (multiple && boundary > 0)) schlickMean_ = schlickAverage();
@@ -164,7 +165,8 @@ void BaseBsdf::setDiffuse(const Vec3& rho, float f0, float f90) {
     const Vec2 fresnel(layerF0_, layerF90_);
     const float below = std::max(0.0f, 1 - (glm::dot(schlickO_, fresnel) + layerMultiple_));
     albedo_[kDiffuse] = rho * below;
-    diffuseScale_ = albedo_[kDiffuse] * (kInvPi / std::max(1 - (glm::dot(schlickMean_, fresnel) + layerMultiple_), 1e-4f));
+    diffuseScale_ =
+        albedo_[kDiffuse] * (kInvPi / std::max(1 - (glm::dot(schlickMean_, fresnel) + layerMultiple_), 1e-4f));
 }
 
 void BaseBsdf::setDiffuseUnderFilm(const Vec3& rho, float specular) {
@@ -206,7 +208,8 @@ Vec2 BaseBsdf::boundaryAlbedo(bool inside) const {
     } else {
         // The table of losses is the better one.
         const float most = near_ ? 1 - near_->lost(boundaryRow_, {ggx_.alpha, wo_.z}) : schlickO_.x + schlickO_.y;
-        once.x = std::min(DielectricAlbedo::get(inside ? 1 / eta_ : eta_, !inside).reflected(boundaryRow_, wo_.z), most);
+        once.x =
+            std::min(DielectricAlbedo::get(inside ? 1 / eta_ : eta_, !inside).reflected(boundaryRow_, wo_.z), most);
         once.y = most - once.x;
     }
     if (deltaTransmission_) return {once.x, 1 - once.x};
@@ -227,8 +230,8 @@ Vec2 BaseBsdf::stretchedBoundaryAlbedo() const {
                     : meanOverVisibleNormals<WideLattice>(ggx_, wo_, atFacet);
 }
 
-/// Albedo towards wo under Schlick's term. The table of stretched facets knows its sum better than how it divides, which
-/// a diffuse base must not be too bright for.
+/// Albedo towards wo under Schlick's term. The table of stretched facets knows its sum better than how it divides,
+/// which a diffuse base must not be too bright for.
 Vec2 BaseBsdf::schlickTowards(bool dividedWell) const {
     const Vec2 tabled = schlickAlbedo(wo_);
     if (!dividedWell || !ggx_.isAnisotropic()) return tabled;
@@ -252,9 +255,10 @@ void BaseBsdf::applyFilm() {
         sums.bareThrough = passed * (1 - fresnelDielectric(std::min(cosTheta, 1.0f), eta_));
         return sums;
     };
-    const FilmSums sums = smooth_ ? atFacet(wo_.z, 1) : meanOverVisibleNormals<NarrowLattice>(ggx_, wo_, [&](const Vec3& h) {
-        return atFacet(glm::dot(wo_, h), reflectedShare(ggx_, wo_, lambdaO_, h));
-    });
+    const FilmSums sums =
+        smooth_ ? atFacet(wo_.z, 1) : meanOverVisibleNormals<NarrowLattice>(ggx_, wo_, [&](const Vec3& h) {
+            return atFacet(glm::dot(wo_, h), reflectedShare(ggx_, wo_, lambdaO_, h));
+        });
     filmAlbedo_ = sums.all > 0 ? sums.reflected / sums.all : Vec3(0);
     const float facets = schlickO_.x + schlickO_.y;
     albedo_[kReflection] = albedo_[kReflection] * (1 - filmShare_) + filmReflecting_ * filmAlbedo_ * facets;

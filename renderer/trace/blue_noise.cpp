@@ -43,7 +43,8 @@ private:
     /// 2^40 exp(-d^2 / (2 1.5^2)) by repeated products of exp(-1 / 4.5) in fixed point.
     static int64_t gaussian(int distance2) {
         int64_t value = int64_t(1) << 40;
-        for (int i = 0; i < distance2 && value > 0; ++i) value = (value >> 20) * 839634 + (((value & 0xfffff) * 839634) >> 20);
+        for (int i = 0; i < distance2 && value > 0; ++i)
+            value = (value >> 20) * 839634 + (((value & 0xfffff) * 839634) >> 20);
         return value;
     }
     /// The pixel of that state with the most (sign 1) or the least energy; the first of several.
@@ -51,7 +52,8 @@ private:
         int best = -1;
         for (int i = 0; i < kCount; ++i) {
             if (pattern_[static_cast<size_t>(i)] != state) continue;
-            if (best < 0 || sign * energy_[static_cast<size_t>(i)] > sign * energy_[static_cast<size_t>(best)]) best = i;
+            if (best < 0 || sign * energy_[static_cast<size_t>(i)] > sign * energy_[static_cast<size_t>(best)])
+                best = i;
         }
         return best;
     }

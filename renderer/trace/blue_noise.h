@@ -3,10 +3,10 @@
 
 namespace lumi {
 
-/// A tile of kSide x kSide pixels that holds every multiple of 1/kSide^2 once, so that numbers near each other stand far
-/// from each other: its low frequencies are empty. Made at first use by the void-and-cluster method
-/// [Ulichney 1993, "The void-and-cluster method for dither array generation"], the same on every machine.
-/// Differs from the paper: nowhere.
+/// A tile of kSide x kSide pixels that holds every multiple of 1/kSide^2 once, so that numbers near each other stand
+/// far from each other: its low frequencies are empty. Made at first use by the void-and-cluster method [Ulichney 1993,
+/// "The void-and-cluster method for dither array generation"], the same on every machine. Differs from the paper:
+/// nowhere.
 class BlueNoiseTile {
 public:
     static constexpr int kSide = 64;

@@ -111,9 +111,7 @@ float Bsdf::probability(Lobe lobe) const {
     return layered_ ? base_.probability(lobe) * baseShare_ : base_.probability(lobe);
 }
 
-bool Bsdf::isDelta() const {
-    return base_.isDelta() && (!coat_ || coat_->isDelta()) && (!sheen_ || sheenShare_ == 0);
-}
+bool Bsdf::isDelta() const { return base_.isDelta() && (!coat_ || coat_->isDelta()) && (!sheen_ || sheenShare_ == 0); }
 
 void Bsdf::keep(bool diffuse, bool specular) {
     base_.keep(diffuse, specular);

@@ -57,7 +57,7 @@ private:
     Vec2 turn_{1, 0};
     std::optional<Clearcoat> coat_;
     std::optional<Sheen> sheen_;
-    float belowCoat_ = 1, belowSheen_ = 1;  ///< what each lets through; the base keeps both
+    float belowCoat_ = 1, belowSheen_ = 1;                  ///< what each lets through; the base keeps both
     float coatShare_ = 0, sheenShare_ = 0, baseShare_ = 1;  ///< of samples
 };
 

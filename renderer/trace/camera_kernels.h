@@ -11,8 +11,8 @@ struct PinholeView {
 };
 
 struct CameraKernels {
-    /// Unit world directions through continuous pixels (x[i], y[i]), and the growth of their footprints in metres a metre:
-    /// what cameraStart() gives, for `count` pixels of a row.
+    /// Unit world directions through continuous pixels (x[i], y[i]), and the growth of their footprints in metres a
+    /// metre: what cameraStart() gives, for `count` pixels of a row.
     void (*pinhole)(const PinholeView& camera, const float* x, const float* y, int count, float* directionX,
                     float* directionY, float* directionZ, float* spread);
 };

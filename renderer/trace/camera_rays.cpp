@@ -39,7 +39,8 @@ PathStart cameraStart(const CameraPose& camera, Vec2 pixelPosition, Vec2 lens, f
     if (camera.aperture > 0) {
         // The lens ray meets the pinhole ray on the plane in focus.
         const Vec3 inFocus = origin + direction * camera.focus;
-        const Vec2 onLens = camera.blades > 0 ? samplePolygon(lens, camera.blades, camera.bladeRotation) : sampleDisk(lens);
+        const Vec2 onLens =
+            camera.blades > 0 ? samplePolygon(lens, camera.blades, camera.bladeRotation) : sampleDisk(lens);
         origin += Vec3(camera.aperture * onLens, 0);
         direction = inFocus - origin;
     }

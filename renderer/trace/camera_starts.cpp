@@ -85,10 +85,11 @@ void makeStarts(const FrameSampling& sampling, Pixel leftTop, Pixel rightBottom,
                 std::vector<PathStart>& starts) {
     assert(rightBottom.x - leftTop.x <= kMostInStartRow);
     const CameraPose& camera = sampling.camera;
-    const bool pinhole = camera.projection == Projection::Perspective && !(camera.aperture > 0) && !sampling.shutterOpen &&
-                         sampling.cameraTrack.empty();
+    const bool pinhole = camera.projection == Projection::Perspective && !(camera.aperture > 0) &&
+                         !sampling.shutterOpen && sampling.cameraTrack.empty();
     const PinholeView view = viewOf(camera);
-    const Vec2 common = sampling.jitter == Jitter::PerFrame ? frameJitter(sample, sampling.seed) + Vec2(0.5f) : Vec2(0.5f);
+    const Vec2 common =
+        sampling.jitter == Jitter::PerFrame ? frameJitter(sample, sampling.seed) + Vec2(0.5f) : Vec2(0.5f);
     const int width = rightBottom.x - leftTop.x;
     starts.resize(static_cast<size_t>(width) * static_cast<size_t>(rightBottom.y - leftTop.y));
     StartRow row;

@@ -24,7 +24,8 @@ Clearcoat::Clearcoat(const LayerInputs& layers, const Vec3& wo) : frame_(usableN
     ggx_.alpha = sqr(std::max(roughness, kTabledRoughness));
     lambdaO_ = ggx_.lambda(wo_);
     const float s = schlickWeight(wo_.z);
-    const Vec2 schlick = smooth_ ? Vec2(1 - s, s) : SchlickAlbedo::get().directional(RoughnessRow(roughness), {ggx_.alpha, wo_.z});
+    const Vec2 schlick =
+        smooth_ ? Vec2(1 - s, s) : SchlickAlbedo::get().directional(RoughnessRow(roughness), {ggx_.alpha, wo_.z});
     albedo_ = weight_ * (kF0 * schlick.x + schlick.y);
 }
 

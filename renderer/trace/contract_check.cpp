@@ -14,7 +14,9 @@
 namespace lumi {
 namespace {
 
-Vec3 colourAt(const Image& image, Pixel p) { return {image.at(0, p.x, p.y), image.at(1, p.x, p.y), image.at(2, p.x, p.y)}; }
+Vec3 colourAt(const Image& image, Pixel p) {
+    return {image.at(0, p.x, p.y), image.at(1, p.x, p.y), image.at(2, p.x, p.y)};
+}
 
 /// Collects one rule over the pixels of a frame.
 class Rule {
@@ -190,7 +192,8 @@ ContractFinding uniformOffsets(const CheckedFrame& frame) {
         ++count;
     });
     if (frame.sampling.camera.aperture > 0 || count < kEnough) return rule.take();
-    const std::vector<double> expected(observed.size(), static_cast<double>(count) / static_cast<double>(observed.size()));
+    const std::vector<double> expected(observed.size(),
+                                       static_cast<double>(count) / static_cast<double>(observed.size()));
     rule.checkTogether(count, -std::log10(std::max(chiSquareTest(observed, expected), 1e-300)));
     return rule.take();
 }

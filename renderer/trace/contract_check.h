@@ -8,25 +8,26 @@ namespace lumi {
 
 /// One rule of the signals' contract (frame/signals.h) and what a frame made of it.
 struct ContractFinding {
-    std::string rule;      ///< "normals are unit vectors"
+    std::string rule;        ///< "normals are unit vectors"
     int64_t violations = 0;  ///< pixels
     int64_t checked = 0;     ///< pixels the rule applies to
-    Pixel worst;           ///< where it is broken most
-    double value = 0;      ///< what was found there
-    double limit = 0;      ///< what is allowed
+    Pixel worst;             ///< where it is broken most
+    double value = 0;        ///< what was found there
+    double limit = 0;        ///< what is allowed
     std::string unit;
     bool holds() const { return violations == 0; }
-    /// "normals are unit vectors: nothing to check" or ": holds in 57600 pixels" or ": broken in 12 of 57600 pixels; at (31, 7) 1.02, allowed 0.001"
+    /// "normals are unit vectors: nothing to check" or ": holds in 57600 pixels" or ": broken in 12 of 57600 pixels; at
+    /// (31, 7) 1.02, allowed 0.001"
     std::string text() const;
 };
 
 /// What checkSignals() needs; ask the tracer for all of it.
 SignalSet contractSignals();
 
-/// Verifies what every filter assumes of its input: finite values, unit normals, albedo in [0,1], the lighting identity,
-/// depth and position that agree with the camera, motion vectors that lead to where the tracer says the surface was,
-/// a jitter distributed as `sampling.jitter` says (through a pinhole: a lens leaves nothing to check), ids that exist, an empty sky. `signals` was made by
-/// tracer.sample(sampling); the tracer is still bound to the same pose.
+/// Verifies what every filter assumes of its input: finite values, unit normals, albedo in [0,1], the lighting
+/// identity, depth and position that agree with the camera, motion vectors that lead to where the tracer says the
+/// surface was, a jitter distributed as `sampling.jitter` says (through a pinhole: a lens leaves nothing to check), ids
+/// that exist, an empty sky. `signals` was made by tracer.sample(sampling); the tracer is still bound to the same pose.
 std::vector<ContractFinding> checkSignals(const Signals& signals, const FrameSampling& sampling, const Tracer& tracer);
 
 }  // namespace lumi

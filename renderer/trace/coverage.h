@@ -18,8 +18,8 @@ inline float alphaAt(const Material& material, const UVec3& corners, const Vec4*
     return alpha;
 }
 
-/// The share of rays that stop at a point of that alpha: 1 where opaque, 0 or 1 where masked, alpha where blended. Light
-/// samples on an emitter count by it, since rays find the emitter that often.
+/// The share of rays that stop at a point of that alpha: 1 where opaque, 0 or 1 where masked, alpha where blended.
+/// Light samples on an emitter count by it, since rays find the emitter that often.
 inline float coverage(const Material& material, float alpha) {
     switch (material.alphaMode) {
         case AlphaMode::Mask: return alpha >= material.alphaCutoff ? 1.0f : 0.0f;

@@ -95,8 +95,8 @@ void DielectricAlbedo::tabulateLost(float eta) {
         for (int column = 0; column < kLossColumns; ++column) {
             const float c = FacetView::cosineAt(static_cast<float>(column) / (kLossColumns - 1), ggx.alpha);
             const Vec3 wo = directionAt(c);
-            lost_[static_cast<size_t>(row)][static_cast<size_t>(column)] = std::max(
-                0.0f, eta < 1 ? lostBy<FinestLattice>(ggx, wo, eta) : lostBy<FineLattice>(ggx, wo, eta));
+            lost_[static_cast<size_t>(row)][static_cast<size_t>(column)] =
+                std::max(0.0f, eta < 1 ? lostBy<FinestLattice>(ggx, wo, eta) : lostBy<FineLattice>(ggx, wo, eta));
         }
     }
     for (int row = 0; row < kMeanRows; ++row) {

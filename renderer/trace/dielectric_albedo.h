@@ -6,8 +6,8 @@
 namespace lumi {
 
 /// GGX boundary between two dielectrics under the exact Fresnel term, seen from one side: what single scattering
-/// reflects, and what it loses because light would have to meet a second facet. Both are off by less than 0.004, but the
-/// former by up to 0.1 where light grazes nearly smooth facets.
+/// reflects, and what it loses because light would have to meet a second facet. Both are off by less than 0.004, but
+/// the former by up to 0.1 where light grazes nearly smooth facets.
 class DielectricAlbedo {
 public:
     static constexpr int kRows = 32;
@@ -31,8 +31,7 @@ public:
     float averageFresnel() const { return averageFresnel_; }
 
 private:
-    static constexpr int kColumns = 65, kLossColumns = 65, kMeanSteps = 4,
-                         kMeanRows = kMeanSteps * (kRows - 1) + 1;
+    static constexpr int kColumns = 65, kLossColumns = 65, kMeanSteps = 4, kMeanRows = kMeanSteps * (kRows - 1) + 1;
     float columnOf(float cosTheta) const;
     float cosineAt(float column) const;
     void tabulateReflected(float eta);

@@ -27,8 +27,7 @@ RTCGeometry EmbreeScene::newTriangles(std::span<const Vec3* const> positions, si
                                                                     RTC_FORMAT_FLOAT3, sizeof(Vec3), vertexCount));
         if (vertices && transform)
             for (size_t i = 0; i < vertexCount; ++i) vertices[i] = transformPoint(*transform, positions[step][i]);
-        else if (vertices)
-            std::memcpy(static_cast<void*>(vertices), positions[step], vertexCount * sizeof(Vec3));
+        else if (vertices) std::memcpy(static_cast<void*>(vertices), positions[step], vertexCount * sizeof(Vec3));
     }
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
                                sizeof(UVec3), mesh.triangles.size());
@@ -48,8 +47,8 @@ RTCGeometry EmbreeScene::newDeforming(const PosedScene& posed, uint32_t index, c
     if (const ShutterTrack* track = plan.inWorld ? nullptr : pose.track())
         for (const auto& shape : track->deformed) steps.push_back(shape->positions.data());
     if (steps.empty()) steps.push_back(pose.deformed->positions.data());
-    return newTriangles(steps, pose.deformed->positions.size(), posed.mesh(index), plan.inWorld ? &pose.worldFromObject : nullptr,
-                        plan.filtered);
+    return newTriangles(steps, pose.deformed->positions.size(), posed.mesh(index),
+                        plan.inWorld ? &pose.worldFromObject : nullptr, plan.filtered);
 }
 
 RTCGeometry EmbreeScene::newBody(const PosedScene& posed, uint32_t index) const {
@@ -133,19 +132,22 @@ void EmbreeScene::findSides(const PosedScene& posed) {
     sides_.assign(plans_.size(), Sides());
     hidesBackFaces_ = false;
     const std::vector<Material>& materials = posed.scene->materials;
-    const bool anywhere = std::any_of(materials.begin(), materials.end(), [](const Material& m) { return isSingleSided(m); });
+    const bool anywhere =
+        std::any_of(materials.begin(), materials.end(), [](const Material& m) { return isSingleSided(m); });
     std::unordered_map<const Mesh*, bool> ofMeshes;  // those whose triangles have materials of their own
     const auto isSingle = [&](uint32_t i) {
         const std::vector<uint32_t>& ofTriangles = posed.mesh(i).triangleMaterial;
         if (posed.scene->instances[i].material >= 0 || ofTriangles.empty()) return isSingleSided(posed, i, 0);
         const auto [known, isNew] = ofMeshes.try_emplace(&posed.mesh(i), false);
-        for (uint32_t t = 0; isNew && t < ofTriangles.size() && !known->second; ++t) known->second = isSingleSided(posed, i, t);
+        for (uint32_t t = 0; isNew && t < ofTriangles.size() && !known->second; ++t)
+            known->second = isSingleSided(posed, i, t);
         return known->second;
     };
     for (uint32_t i = 0; anywhere && i < plans_.size(); ++i) {
         const Plan& plan = plans_[i];
         if (plan.mode == Mode::None || plan.mode == Mode::Body || plan.mode == Mode::MovingBody) continue;
-        // What is not in world space is traced in its own, where glTF's front faces turn counter-clockwise, mirrored or not.
+        // What is not in world space is traced in its own, where glTF's front faces turn counter-clockwise, mirrored or
+        // not.
         sides_[i].turned = plan.inWorld && glm::determinant(glm::mat3(posed.instances[i].worldFromObject)) < 0;
         sides_[i].single = isSingle(i);
         hidesBackFaces_ |= sides_[i].single;

@@ -31,8 +31,8 @@ bool hasAlpha(const Scene& scene, const Mesh& mesh) {
     return std::any_of(mesh.triangleMaterial.begin(), mesh.triangleMaterial.end(), masked);
 }
 
-/// Can rays be carried into the space of `m`? Not if it flattens, nearly so, or makes things so small that a ray's numbers
-/// there pass what Embree allows. In double: a float's determinant underflows at a scale of 1e-13.
+/// Can rays be carried into the space of `m`? Not if it flattens, nearly so, or makes things so small that a ray's
+/// numbers there pass what Embree allows. In double: a float's determinant underflows at a scale of 1e-13.
 bool carriesRays(const Mat4& m) {
     constexpr double kMost = 1e7;  // times a camera's distance, 1e10 m: below 1.8e18
     const glm::dmat3 inverse = glm::inverse(glm::dmat3(glm::dmat4(m)));
@@ -46,7 +46,8 @@ bool carriesRays(const Mat4& m) {
 bool isSpeck(const Mat4& m) {
     const glm::dmat3 d{glm::dmat4(m)};
     const glm::dvec3 cofactors[] = {glm::cross(d[0], d[1]), glm::cross(d[1], d[2]), glm::cross(d[2], d[0])};
-    return std::all_of(std::begin(cofactors), std::end(cofactors), [](const glm::dvec3& c) { return glm::length(c) < 1e-38; });
+    return std::all_of(std::begin(cofactors), std::end(cofactors),
+                       [](const glm::dvec3& c) { return glm::length(c) < 1e-38; });
 }
 
 /// carriesRays() at all moments of the open shutter: between two of them a mirroring flattens too.
@@ -91,12 +92,14 @@ std::vector<EmbreeScene::Plan> EmbreeScene::makePlans(const PosedScene& posed, c
         // What moved once may move again: it stays an instance.
         const bool moved = before && i < plans_.size() && meshOf(*before, i) == mesh &&
                            (plans_[i].mode == Mode::Instanced || plans_[i].mode == Mode::MovingBody);
-        const bool moves = pose.moves() || moved || (instance.node >= 0 && animated[static_cast<size_t>(instance.node)]);
+        const bool moves =
+            pose.moves() || moved || (instance.node >= 0 && animated[static_cast<size_t>(instance.node)]);
         if (instance.light >= 0 && hasBody(scene.lights[static_cast<size_t>(instance.light)].type)) {
             plan.mode = moves ? Mode::MovingBody : Mode::Body;
         } else if (mesh && !mesh->triangles.empty()) {
             const Use& use = uses[mesh];
-            plan.filtered = instance.material >= 0 ? hasAlpha(scene, static_cast<uint32_t>(instance.material)) : use.hasAlpha;
+            plan.filtered =
+                instance.material >= 0 ? hasAlpha(scene, static_cast<uint32_t>(instance.material)) : use.hasAlpha;
             const bool instanced = pose.deformed || moves || use.count > 1;
             // What is flat at present stands in the world as it is when the shutter opens.
             plan.inWorld = !instanced || !carriesRays(pose);
@@ -112,10 +115,12 @@ bool EmbreeScene::sameAttachments(const PosedScene& a, const std::vector<Plan>& 
                                   const std::vector<Plan>& plansB) {
     if (plansA.size() != plansB.size()) return false;
     for (size_t i = 0; i < plansA.size(); ++i) {
-        if (plansA[i].mode != plansB[i].mode || plansA[i].filtered != plansB[i].filtered || meshOf(a, i) != meshOf(b, i))
+        if (plansA[i].mode != plansB[i].mode || plansA[i].filtered != plansB[i].filtered ||
+            meshOf(a, i) != meshOf(b, i))
             return false;
         const auto index = static_cast<uint32_t>(i);
-        if (plansA[i].mode == Mode::Direct && a.instances[i].worldFromObject != b.instances[i].worldFromObject) return false;
+        if (plansA[i].mode == Mode::Direct && a.instances[i].worldFromObject != b.instances[i].worldFromObject)
+            return false;
         if (plansA[i].mode == Mode::Body && !(Body(a, index).shape == Body(b, index).shape)) return false;
     }
     return true;

@@ -17,17 +17,14 @@ namespace {
 
 const char* deviceConfig() {
     switch (activeIsa()) {
-        case Isa::V4:
-            return "isa=avx512";
-        case Isa::V3:
-            return "isa=avx2";
-        default:
-            return "isa=sse2";
+        case Isa::V4: return "isa=avx512";
+        case Isa::V3: return "isa=avx2";
+        default: return "isa=sse2";
     }
 }
 
-/// Triangles up to which bounce and shadow rays go in packets: box scenes of a few dozen gain a third to two thirds by them,
-/// those of 100,000 and more lose up to a fifth.
+/// Triangles up to which bounce and shadow rays go in packets: box scenes of a few dozen gain a third to two thirds by
+/// them, those of 100,000 and more lose up to a fifth.
 constexpr size_t kSmallScene = 10000;
 
 }  // namespace
@@ -39,12 +36,9 @@ EmbreeScene::EmbreeScene() : monitor_(std::make_unique<Monitor>()) {
                     {"Embree does not start", "", "", std::string("isa ") + isaName(activeIsa())});
     rtcSetDeviceErrorFunction(device_, &Monitor::error, monitor_.get());
     rtcSetDeviceMemoryMonitorFunction(device_, &Monitor::memory, monitor_.get());
-    if (rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED))
-        packetWidth_ = 16;
-    else if (rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED))
-        packetWidth_ = 8;
-    else if (rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED))
-        packetWidth_ = 4;
+    if (rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) packetWidth_ = 16;
+    else if (rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) packetWidth_ = 8;
+    else if (rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED)) packetWidth_ = 4;
 }
 
 EmbreeScene::~EmbreeScene() {
@@ -69,7 +63,8 @@ void EmbreeScene::clear() {
 
 const Vec3* EmbreeScene::worldPositions(uint32_t instance) const {
     if (plans_[instance].mode != Mode::Direct) return nullptr;
-    return static_cast<const Vec3*>(rtcGetGeometryBufferData(attachments_[instance].geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+    return static_cast<const Vec3*>(
+        rtcGetGeometryBufferData(attachments_[instance].geometry, RTC_BUFFER_TYPE_VERTEX, 0));
 }
 
 size_t EmbreeScene::byteCount() const {
@@ -198,18 +193,25 @@ void EmbreeScene::rebuild(const PosedScene& posed, std::vector<Plan> plans) {
         if (isNew) meshScenes_.push_back({&posed.mesh(i), false, nullptr});
         meshScenes_[entry->second].filtered |= plans_[i].filtered;
     }
-    parallelFor(static_cast<int64_t>(meshScenes_.size()), [&](int64_t i) {
-        MeshScene& m = meshScenes_[static_cast<size_t>(i)];
-        m.scene = newScene();
-        const Vec3* positions = m.mesh->positions.data();
-        attachSingle(m.scene, newTriangles({&positions, 1}, m.mesh->positions.size(), *m.mesh, nullptr, m.filtered));
-    }, monitor_->stop);
+    parallelFor(
+        static_cast<int64_t>(meshScenes_.size()),
+        [&](int64_t i) {
+            MeshScene& m = meshScenes_[static_cast<size_t>(i)];
+            m.scene = newScene();
+            const Vec3* positions = m.mesh->positions.data();
+            attachSingle(m.scene,
+                         newTriangles({&positions, 1}, m.mesh->positions.size(), *m.mesh, nullptr, m.filtered));
+        },
+        monitor_->stop);
     throwIfStopped();
-    parallelFor(static_cast<int64_t>(plans_.size()), [&](int64_t i) {
-        const auto index = static_cast<uint32_t>(i);
-        const bool shared = plans_[index].mode == Mode::Instanced;
-        makeAttachment(posed, index, shared ? meshScenes_[sceneOf.at(&posed.mesh(index))].scene : nullptr);
-    }, monitor_->stop);
+    parallelFor(
+        static_cast<int64_t>(plans_.size()),
+        [&](int64_t i) {
+            const auto index = static_cast<uint32_t>(i);
+            const bool shared = plans_[index].mode == Mode::Instanced;
+            makeAttachment(posed, index, shared ? meshScenes_[sceneOf.at(&posed.mesh(index))].scene : nullptr);
+        },
+        monitor_->stop);
     throwIfStopped();
     attachAll(posed);
 }
@@ -238,27 +240,33 @@ void EmbreeScene::attachAll(const PosedScene& posed) {
 
 void EmbreeScene::update(const PosedScene& posed, const PosedScene& before, std::vector<Plan> plans) {
     std::vector<uint8_t> changed(plans.size(), 0), rebuilt(plans.size(), 0);
-    parallelFor(static_cast<int64_t>(plans.size()), [&](int64_t number) {
-        const auto i = static_cast<uint32_t>(number);
-        const Plan& plan = plans[i];
-        const PosedInstance &pose = posed.instances[i], &earlier = before.instances[i];
-        Attachment& a = attachments_[i];
-        const bool inWorld = plan.inWorld || plans_[i].inWorld;
-        const bool otherTrack = (plan.inWorld ? nullptr : pose.track()) != (plans_[i].inWorld ? nullptr : earlier.track());
-        const bool reshaped = plan.mode == Mode::MovingBody && !(Body(posed, i) == Body(before, i));
-        const bool otherPlace = pose.worldFromObject != earlier.worldFromObject || plan.inWorld != plans_[i].inWorld;
-        const bool deformed =
-            plan.mode == Mode::Deforming && (pose.deformed != earlier.deformed || otherTrack || (otherPlace && inWorld));
-        const bool carried = (plan.mode == Mode::Instanced || plan.mode == Mode::Deforming) && (otherPlace || otherTrack);
-        if (!reshaped && !deformed && !carried) return;
-        changed[i] = 1;
-        if (reshaped || deformed) {
-            rebuilt[i] = 1;
-            rtcDetachGeometry(a.own, 0);
-            attachSingle(a.own, reshaped ? newBody(posed, i) : newDeforming(posed, i, plan));
-        }
-        if (carried) setTransforms(a.geometry, transformsOf(pose, plan.inWorld));
-    }, monitor_->stop);
+    parallelFor(
+        static_cast<int64_t>(plans.size()),
+        [&](int64_t number) {
+            const auto i = static_cast<uint32_t>(number);
+            const Plan& plan = plans[i];
+            const PosedInstance &pose = posed.instances[i], &earlier = before.instances[i];
+            Attachment& a = attachments_[i];
+            const bool inWorld = plan.inWorld || plans_[i].inWorld;
+            const bool otherTrack =
+                (plan.inWorld ? nullptr : pose.track()) != (plans_[i].inWorld ? nullptr : earlier.track());
+            const bool reshaped = plan.mode == Mode::MovingBody && !(Body(posed, i) == Body(before, i));
+            const bool otherPlace =
+                pose.worldFromObject != earlier.worldFromObject || plan.inWorld != plans_[i].inWorld;
+            const bool deformed = plan.mode == Mode::Deforming &&
+                                  (pose.deformed != earlier.deformed || otherTrack || (otherPlace && inWorld));
+            const bool carried =
+                (plan.mode == Mode::Instanced || plan.mode == Mode::Deforming) && (otherPlace || otherTrack);
+            if (!reshaped && !deformed && !carried) return;
+            changed[i] = 1;
+            if (reshaped || deformed) {
+                rebuilt[i] = 1;
+                rtcDetachGeometry(a.own, 0);
+                attachSingle(a.own, reshaped ? newBody(posed, i) : newDeforming(posed, i, plan));
+            }
+            if (carried) setTransforms(a.geometry, transformsOf(pose, plan.inWorld));
+        },
+        monitor_->stop);
     throwIfStopped();
     plans_ = std::move(plans);
     bool any = false;

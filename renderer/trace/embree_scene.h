@@ -43,12 +43,12 @@ public:
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-    /// Builds what `posed` needs and keeps what did not change since the last call. `posed` must outlive the tracing, and
-    /// the next call: what changed is found by comparing the two.
-    /// Returns true if attachments were made anew: worldPositions() are others then.
-    /// Throws Error(Resources) if Embree runs out of memory or past the limit, and Error(Interrupted) once `stop` is
-    /// requested, which is looked at between instances and within builds; the scene is empty then. `progress` (may be
-    /// empty) is called with the part of each of Embree's builds that is done, from any of its threads at a time.
+    /// Builds what `posed` needs and keeps what did not change since the last call. `posed` must outlive the tracing,
+    /// and the next call: what changed is found by comparing the two. Returns true if attachments were made anew:
+    /// worldPositions() are others then. Throws Error(Resources) if Embree runs out of memory or past the limit, and
+    /// Error(Interrupted) once `stop` is requested, which is looked at between instances and within builds; the scene
+    /// is empty then. `progress` (may be empty) is called with the part of each of Embree's builds that is done, from
+    /// any of its threads at a time.
     bool bind(const PosedScene& posed, std::stop_token stop = {}, const std::function<void(double)>& progress = {});
 
     RTCScene handle() const { return top_; }
@@ -56,8 +56,8 @@ public:
     const Vec3* worldPositions(uint32_t instance) const;
     /// Widest packet the device traces natively: 16, 8, 4 or 1.
     int packetWidth() const { return packetWidth_; }
-    /// In what packets rays that go anywhere are fastest: the widest in small scenes, whose few nodes most rays meet alike,
-    /// else 1.
+    /// In what packets rays that go anywhere are fastest: the widest in small scenes, whose few nodes most rays meet
+    /// alike, else 1.
     int strayPacketWidth() const { return strayPacketWidth_; }
     /// World space; of all that is bound, over the open shutter.
     const Bounds3& bounds() const { return bounds_; }
@@ -102,7 +102,8 @@ private:
     int packetWidth_ = 1, strayPacketWidth_ = 1;
     Bounds3 bounds_;
     const PosedScene* posed_ = nullptr;  ///< null while the scene is empty
-    /// Of each instance: has it a surface whose back the camera does not see, and does Embree see its faces turned round?
+    /// Of each instance: has it a surface whose back the camera does not see, and does Embree see its faces turned
+    /// round?
     struct Sides {
         bool single = false, turned = false;
     };

@@ -157,10 +157,12 @@ void EnvironmentLight::buildAmbientCube(const Grid& grid, double cell) {
     std::array<double, 6> sums{};
     for (int row = 0; row < grid.rows; ++row)
         for (int column = 0; column < grid.columns; ++column) {
-            const Vec3 d = directionFromLatLong(Vec2((static_cast<float>(column) + 0.5f) / static_cast<float>(grid.columns),
-                                                     (static_cast<float>(row) + 0.5f) / static_cast<float>(grid.rows)));
+            const Vec3 d =
+                directionFromLatLong(Vec2((static_cast<float>(column) + 0.5f) / static_cast<float>(grid.columns),
+                                          (static_cast<float>(row) + 0.5f) / static_cast<float>(grid.rows)));
             const double weight = grid.weight[static_cast<size_t>(row) * static_cast<size_t>(grid.columns) +
-                                              static_cast<size_t>(column)] * cell;
+                                              static_cast<size_t>(column)] *
+                                  cell;
             for (int axis = 0; axis < 3; ++axis)
                 sums[static_cast<size_t>(2 * axis + (d[axis] < 0))] += weight * std::abs(d[axis]);
         }
@@ -212,7 +214,8 @@ Vec3 EnvironmentLight::radiance(const Vec3& direction) const {
 
 Vec3 EnvironmentLight::imageRadiance(Vec2 uv) const {
     // A direction that is no number looks up a texel too.
-    const float fx = saturate(uv.x) * static_cast<float>(width_) + 0.5f, fy = saturate(uv.y) * static_cast<float>(height_) + 0.5f;
+    const float fx = saturate(uv.x) * static_cast<float>(width_) + 0.5f,
+                fy = saturate(uv.y) * static_cast<float>(height_) + 0.5f;
     // Texel centres are at halves: the pair around the point is (cell - 1, cell).
     const int cellX = static_cast<int>(fx), cellY = static_cast<int>(fy);
     const float tx = fx - static_cast<float>(cellX), ty = fy - static_cast<float>(cellY);

@@ -45,7 +45,9 @@ struct Ggx {
     }
 
     /// `w` as seen from the configuration where the roughness is 1.
-    Vec3 stretched(const Vec3& w) const { return glm::normalize(Vec3(alpha * (w.x * stretch), alpha * (w.y * shrink), w.z)); }
+    Vec3 stretched(const Vec3& w) const {
+        return glm::normalize(Vec3(alpha * (w.x * stretch), alpha * (w.y * shrink), w.z));
+    }
     /// The map behind sampleVisibleNormal(), for quadrature: `height` and the azimuth run over the unit square.
     Vec3 visibleNormal(const Vec3& stretchedWo, float height, float cosPhi, float sinPhi) const {
         const float z = (1 - height) * (1 + stretchedWo.z) - stretchedWo.z;

@@ -30,8 +30,12 @@ FirstHitJudge* judgeOf(std::span<PathObserver* const> observers) {
 
 Integrator::Integrator(const TraceScene& scene, const PathSettings& settings, uint32_t seed,
                        std::span<PathObserver* const> observers)
-    : scene_(scene), settings_(settings), seed_(seed), judge_(judgeOf(observers)),
-      observers_(judge_ ? observers.subspan(1) : observers), needs_(joined(observers_)) {
+    : scene_(scene),
+      settings_(settings),
+      seed_(seed),
+      judge_(judgeOf(observers)),
+      observers_(judge_ ? observers.subspan(1) : observers),
+      needs_(joined(observers_)) {
     usesLightSamples_ = !scene.lights.empty() && (settings.strategy != DirectStrategy::Bsdf || scene.lights.hasDelta());
 }
 
@@ -53,10 +57,8 @@ Vec3 Integrator::limited(const PathState& path, const Vec3& radiance, int depth)
 }
 
 void Integrator::add(PathBatch& batch, PathState& path, const Vec3& contribution) const {
-    if (isFinite(contribution))
-        path.radiance += contribution;
-    else
-        ++batch.nonFinite;
+    if (isFinite(contribution)) path.radiance += contribution;
+    else ++batch.nonFinite;
 }
 
 bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::span<const SurfacePoint> firstPoints,
@@ -229,7 +231,8 @@ void Integrator::shade(PathBatch& batch, uint32_t row, int depth, std::span<cons
         vertex->distance = distance;
     }
     if (!isBlack(surface.emitted))
-        addEmission(path, {point, surface.position, surface.outwardNormal, surface.emitted, surface.body}, depth, vertex, batch);
+        addEmission(path, {point, surface.position, surface.outwardNormal, surface.emitted, surface.body}, depth,
+                    vertex, batch);
     if (last || surface.body >= 0) return;
 
     if (!surface.inputs.layered && !(surface.inputs.transmission > 0)) return addPlain(batch, row, surface);
@@ -254,8 +257,8 @@ void Integrator::shadeMiss(PathState& path, int depth, PathVertex* vertex, PathB
     const auto weight = [&](float pdf) {
         return pdf <= 0 ? 1 : settings_.strategy == DirectStrategy::Light ? 0 : misWeight(path.scatterPdf, pdf);
     };
-    const Vec3 radiance = scene_.lights.escaped(path.ray.direction, path.ray.time, depth == 0,
-                                                certain ? nullptr : &path.scatter, weight);
+    const Vec3 radiance =
+        scene_.lights.escaped(path.ray.direction, path.ray.time, depth == 0, certain ? nullptr : &path.scatter, weight);
     const Vec3 emitted = isBlack(radiance) ? radiance : limited(path, radiance, depth);
     add(batch, path, path.throughput * emitted);
     if (!vertex) return;
@@ -267,14 +270,15 @@ void Integrator::shadeMiss(PathState& path, int depth, PathVertex* vertex, PathB
     vertex->emitted = isFinite(path.throughput * emitted) ? emitted : Vec3(0);
 }
 
-void Integrator::addEmission(PathState& path, const Found& found, int depth, PathVertex* vertex, PathBatch& batch) const {
+void Integrator::addEmission(PathState& path, const Found& found, int depth, PathVertex* vertex,
+                             PathBatch& batch) const {
     float weight = 1;
     if (depth > 0 && path.scatterPdf > 0 && settings_.strategy != DirectStrategy::Bsdf) {
         const Vec3& direction = path.ray.direction;
         const float lightPdf =
             found.body >= 0 ? scene_.lights.pdfBody(found.body, path.scatter, direction, found.position)
-                            : scene_.lights.pdfTriangle(found.point.instance, found.point.primitive, path.scatter, direction,
-                                                        found.position, found.outwardNormal, found.area);
+                            : scene_.lights.pdfTriangle(found.point.instance, found.point.primitive, path.scatter,
+                                                        direction, found.position, found.outwardNormal, found.area);
         if (lightPdf > 0)
             weight = settings_.strategy == DirectStrategy::Light ? 0 : misWeight(path.scatterPdf, lightPdf);
     }

@@ -61,7 +61,8 @@ private:
     void describeVertex(const PathState& path, const Surface& surface, const Vec3& wo, int depth,
                         PathVertex& vertex) const;
     // Vertices on plain surfaces, all of a batch together (integrator_plain.cpp).
-    void collectPlain(PathBatch& batch, uint32_t row, const InstanceRecord& instance, const MaterialRecord& material) const;
+    void collectPlain(PathBatch& batch, uint32_t row, const InstanceRecord& instance,
+                      const MaterialRecord& material) const;
     void placePlain(PathBatch& batch, int depth) const;
     void addPlainEmission(PathBatch& batch, int lane, int depth) const;
     void describePlain(const PathBatch& batch, int lane, int depth, PathVertex& vertex) const;

@@ -4,7 +4,8 @@
 namespace lumi {
 
 /// First hits as the judge wants them; paths that it ends are no longer active.
-void Integrator::findJudgedHits(PathBatch& batch, std::span<const PathStart> starts, bool coherent, TraceCounts& counts) const {
+void Integrator::findJudgedHits(PathBatch& batch, std::span<const PathStart> starts, bool coherent,
+                                TraceCounts& counts) const {
     const size_t count = starts.size();
     batch.rays.resize(count), batch.hits.resize(count);
     batch.firstIds.resize(count), batch.firstHits.resize(count);

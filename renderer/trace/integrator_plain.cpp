@@ -57,13 +57,14 @@ void Integrator::placePlain(PathBatch& batch, int depth) const {
     plainKernels().place(lanes);
     if (!last || described) {
         const auto find = [&](int i) {
-            if (batch.taps[i].material->textures != 0) findTexels(scene_.tables, lanes, i, !path(i).diffuseBefore, batch.taps[i]);
+            if (batch.taps[i].material->textures != 0)
+                findTexels(scene_.tables, lanes, i, !path(i).diffuseBefore, batch.taps[i]);
         };
         const auto read = [&](int i) {
             if (batch.taps[i].material->textures != 0) readTexels(scene_.tables, batch.taps[i], lanes, i);
         };
-        // Where a judge has put the hits, texels of neighbours share few lines of memory, which sends only so many at a time:
-        // the first are read meanwhile.
+        // Where a judge has put the hits, texels of neighbours share few lines of memory, which sends only so many at a
+        // time: the first are read meanwhile.
         const int ahead = judge_ ? std::min(16, lanes.count) : lanes.count;
         for (int i = 0; i < ahead; ++i) find(i);
         for (int i = ahead; i < lanes.count; ++i) find(i), read(i - ahead);
@@ -94,8 +95,12 @@ void Integrator::addPlainEmission(PathBatch& batch, int i, int depth) const {
     if (isBlack(emitted)) return;
     const Vec3 geometric = lanes.geometricNormal.get<Vec3>(i);
     addEmission(path,
-                {{hit.instance, hit.primitive, b, path.ray.time}, lanes.position.get<Vec3>(i),
-                 front ? geometric : -geometric, emitted, -1, lanes.area[i]},
+                {{hit.instance, hit.primitive, b, path.ray.time},
+                 lanes.position.get<Vec3>(i),
+                 front ? geometric : -geometric,
+                 emitted,
+                 -1,
+                 lanes.area[i]},
                 depth, depth < needs_.vertexDepths ? &batch.vertices[lanes.row[i]] : nullptr, batch);
 }
 
@@ -131,7 +136,8 @@ void Integrator::drawNumbers(PathBatch& batch, int depth, bool lights, bool roul
     const auto stream = [&](int i) -> const SampleStream& { return batch.paths[batch.active[lanes.row[i]]].stream; };
     const bool sobol = settings_.sampler == SamplerKind::Sobol;
     if (sobol)
-        for (int i = 0; i < lanes.count; ++i) lanes.scramble[i] = stream(i).scramble(), lanes.index[i] = stream(i).index();
+        for (int i = 0; i < lanes.count; ++i)
+            lanes.scramble[i] = stream(i).scramble(), lanes.index[i] = stream(i).index();
     for (const Use& use : uses) {
         if (!use.wanted) continue;
         const uint32_t at = dimension::vertex(depth, use.use);
@@ -189,8 +195,7 @@ void Integrator::samplePlainLights(PathBatch& batch) const {
     PlainLanes& lanes = batch.plain;
     const auto count = static_cast<size_t>(lanes.count);
     const auto path = [&](int i) -> const PathState& { return batch.paths[batch.active[lanes.row[i]]]; };
-    for (int i = 0; i < lanes.count; ++i)
-        setReceiver(batch.receivers[i], lanes, i, path(i).ray.time);
+    for (int i = 0; i < lanes.count; ++i) setReceiver(batch.receivers[i], lanes, i, path(i).ray.time);
     scene_.lights.choose({batch.receivers, count}, lanes.lightX, lanes.lightY, {batch.choices, count});
     scene_.lights.samplePoints({batch.choices, count}, {batch.receivers, count}, batch.lights, lanes);
     if (settings_.strategy == DirectStrategy::Bsdf)
@@ -200,7 +205,8 @@ void Integrator::samplePlainLights(PathBatch& batch) const {
     for (int i = 0; i < lanes.count; ++i) {
         const Vec3& absorption = path(i).absorption;
         if (lanes.lightPdf[i] == 0 || isBlack(absorption) || !std::isfinite(lanes.lightDistance[i])) continue;
-        lanes.lightRadiance.set(i, lanes.lightRadiance.get<Vec3>(i) * transmittance(absorption, lanes.lightDistance[i]));
+        lanes.lightRadiance.set(i,
+                                lanes.lightRadiance.get<Vec3>(i) * transmittance(absorption, lanes.lightDistance[i]));
     }
 }
 

@@ -12,9 +12,8 @@ float orientationMeasure(const LightBounds& b) {
     const float reach = std::acos(std::clamp(b.cosReach, -1.0f, 1.0f));
     const float whole = std::min(spread + reach, kPi);
     const float sinSpread = std::sin(spread);
-    return 2 * kPi * (1 - b.cosSpread) + kPi / 2 *
-                                             (2 * whole * sinSpread - std::cos(spread - 2 * whole) -
-                                              2 * spread * sinSpread + b.cosSpread);
+    return 2 * kPi * (1 - b.cosSpread) +
+           kPi / 2 * (2 * whole * sinSpread - std::cos(spread - 2 * whole) - 2 * spread * sinSpread + b.cosSpread);
 }
 
 float areaOf(const Bounds3& box) {
@@ -52,8 +51,8 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
     if (angle + spreadNarrow <= spreadWide) return all;
     const float spread = 0.5f * (spreadWide + angle + spreadNarrow);
     const float turn = spread - spreadWide, sine = std::sin(angle);
-    const Vec3 turned = sine > 1e-4f ? wide.axis * (std::sin(angle - turn) / sine) + axis * (std::sin(turn) / sine)
-                                     : wide.axis;
+    const Vec3 turned =
+        sine > 1e-4f ? wide.axis * (std::sin(angle - turn) / sine) + axis * (std::sin(turn) / sine) : wide.axis;
     const float length = glm::length(turned);
     // Opposite axes have no middle; nearly equal ones need none, their spread is a little more.
     if (!(spread < kPi) || !(length > 0.5f) || (sine <= 1e-4f && between < 0)) {

@@ -3,9 +3,9 @@
 
 namespace lumi {
 
-/// Bounds of where lights are and where they shine to. Directions that a light faces lie within `cosSpread` of the axis (and
-/// of its opposite if `bothSides`), and it shines up to `cosReach` from each of them: a sphere has spread -1 and reach
-/// 0, a triangle 1 and 0, a spot 1 and the cosine of its cone.
+/// Bounds of where lights are and where they shine to. Directions that a light faces lie within `cosSpread` of the axis
+/// (and of its opposite if `bothSides`), and it shines up to `cosReach` from each of them: a sphere has spread -1 and
+/// reach 0, a triangle 1 and 0, a spot 1 and the cosine of its cone.
 struct LightBounds {
     Bounds3 box;
     Vec3 axis{0, 0, 1};

@@ -4,7 +4,8 @@
 
 namespace lumi {
 
-/// What kernels read to make the light samples of PlainLanes, a lane each, and what they tell beside PlainLanes' columns.
+/// What kernels read to make the light samples of PlainLanes, a lane each, and what they tell beside PlainLanes'
+/// columns.
 struct alignas(64) LightLanes {
     using Column = PlainLanes::Column;
     using Column3 = PlainLanes::Column3;
@@ -15,11 +16,11 @@ struct alignas(64) LightLanes {
     bool has[kSky + 1] = {};  ///< kinds that some lane is of
     Column chance;            ///< of the chosen light
 
-    // Triangles: corner and edges; points: place, axis and (range, spotScale, spotOffset); cells of the sky: (column, row, -)
-    // and the bounds of the random numbers that choose it, (low, high, -) for columns, then for rows.
+    // Triangles: corner and edges; points: place, axis and (range, spotScale, spotOffset); cells of the sky: (column,
+    // row, -) and the bounds of the random numbers that choose it, (low, high, -) for columns, then for rows.
     Column3 first, second, third;
-    Column3 value;               ///< radiance of triangles, intensity of points
-    Column offset, side;         ///< of triangles: Lights::Triangle's; 1: shines to the front, -1: to the back, 0: to both
+    Column3 value;        ///< radiance of triangles, intensity of points
+    Column offset, side;  ///< of triangles: Lights::Triangle's; 1: shines to the front, -1: to the back, 0: to both
 
     Column3 position;   ///< out: the light's point; for the sky the direction
     Column skyU, skyV;  ///< out: place in the sky's image
@@ -32,8 +33,8 @@ struct SkyGrid {
 };
 
 struct LightLaneKernels {
-    // Samples of one kind of light: directions, targets, radiances, distances and densities; pdf 0 where nothing arrives.
-    // What Lights::samplePoint() does one by one. Other lanes stay as they are.
+    // Samples of one kind of light: directions, targets, radiances, distances and densities; pdf 0 where nothing
+    // arrives. What Lights::samplePoint() does one by one. Other lanes stay as they are.
     void (*triangles)(LightLanes& lights, PlainLanes& lanes);
     void (*points)(LightLanes& lights, PlainLanes& lanes);
     void (*sky)(const SkyGrid& grid, LightLanes& lights, PlainLanes& lanes);

@@ -23,7 +23,7 @@ struct LightShape {
     float area = 1;                       ///< m^2, of the emitting side
     bool rightAngled = true;              ///< halfX and halfY are orthogonal
     Vec3 radiance{1};
-    const Texture* texture = nullptr;     ///< of the flat ones: times radiance, level 0; it belongs to the scene
+    const Texture* texture = nullptr;  ///< of the flat ones: times radiance, level 0; it belongs to the scene
 
     /// Radiance of the point named (u, v). Seen from the front, u grows to the left and v upwards.
     Vec3 radianceAt(Vec2 uv) const { return texture ? radiance * texel(uv) : radiance; }

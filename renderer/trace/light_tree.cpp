@@ -57,10 +57,8 @@ public:
             }
             const auto first = static_cast<uint32_t>(nodes.size());
             nodes[self].child[c] = first;
-            if (together)
-                append(nodes, subtrees[static_cast<size_t>(c)], first);
-            else
-                build(child, nodes, depth + 1);
+            if (together) append(nodes, subtrees[static_cast<size_t>(c)], first);
+            else build(child, nodes, depth + 1);
         }
     }
 
@@ -81,7 +79,8 @@ private:
     }
     static LightTreeNode emptyNode() {
         LightTreeNode node{};
-        for (int c = 0; c < kWidth; ++c) node.axisZ[c] = 1, node.child[c] = LightTreeNode::kLight, node.far2[c] = kInfinity;
+        for (int c = 0; c < kWidth; ++c)
+            node.axisZ[c] = 1, node.child[c] = LightTreeNode::kLight, node.far2[c] = kInfinity;
         return node;
     }
     static void setColumn(LightTreeNode& node, int c, const LightBounds& b) {
@@ -109,7 +108,8 @@ private:
         return bounds;
     }
 
-    /// Cuts `range` into up to eight, always the costliest first, or if `even` the largest, and into halves. Returns how many.
+    /// Cuts `range` into up to eight, always the costliest first, or if `even` the largest, and into halves. Returns
+    /// how many.
     int divide(const Range& range, std::array<Range, kWidth>& parts, bool even) {
         parts[0] = range;
         int count = 1;
@@ -283,8 +283,7 @@ void LightTree::findWays() {
             assert(way.length < LightTreeWay::kMost);
             way.columns |= uint64_t(c) << (LightTreeWay::kBits * way.length++);
             const uint32_t light = node.child[c] & ~LightTreeNode::kLight;
-            if (light == node.child[c])
-                waysTo[node.child[c]] = way;
+            if (light == node.child[c]) waysTo[node.child[c]] = way;
             else if (node.intensity[c] > 0)
                 ways_[light].columns = way.columns | LightTreeWay::kEnd << (LightTreeWay::kBits * way.length);
         }

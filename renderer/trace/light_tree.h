@@ -7,11 +7,11 @@
 
 namespace lumi {
 
-/// A tree over lights at finite places, from which one is drawn by its importance to a point
-/// [Conty Estevez & Kulla 2018]: built top-down by the surface area orientation heuristic (section 4.4) over bins.
-/// Differs from the paper: nodes have eight children, compared with each other at once, so that the walk down is short
-/// and lights that cannot reach the point are left out early; far groups of lights that face alike end it, drawn from by
-/// intensity alone; no splitting into several lights.
+/// A tree over lights at finite places, from which one is drawn by its importance to a point [Conty Estevez & Kulla
+/// 2018]: built top-down by the surface area orientation heuristic (section 4.4) over bins. Differs from the paper:
+/// nodes have eight children, compared with each other at once, so that the walk down is short and lights that cannot
+/// reach the point are left out early; far groups of lights that face alike end it, drawn from by intensity alone; no
+/// splitting into several lights.
 class LightTree {
 public:
     /// Light i of the tree is bounds[i]. Keeps what it has if the bounds are those of the last build.
@@ -41,9 +41,7 @@ public:
     size_t byteCount() const;
 
 private:
-    LightTreeView view() const {
-        return {nodes_.data(), groups_.data(), ranks_.data()};
-    }
+    LightTreeView view() const { return {nodes_.data(), groups_.data(), ranks_.data()}; }
     void rankLights(std::span<const LightBounds> lights, std::span<const uint32_t> order);
     void findWays();
     void findGroups();
@@ -53,7 +51,7 @@ private:
     std::vector<LightTreeWay> ways_;      ///< to each light
     std::vector<LightTreeGroup> groups_;  ///< of each place
     std::vector<LightTreeRank> ranks_;
-    uint64_t digest_ = 0;            ///< of the bounds
+    uint64_t digest_ = 0;  ///< of the bounds
 };
 
 }  // namespace lumi

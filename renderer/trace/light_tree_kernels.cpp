@@ -12,8 +12,8 @@ constexpr float kDigits = 0x1p-10f;
 
 inline float positive(float x) { return x > 0 ? x : 0.0f; }
 
-/// Importance of the eight columns. Angles are kept as sine and cosine: cos(max(0, a - b)) is cos a cos b + sin a sin b,
-/// or 1 where a <= b.
+/// Importance of the eight columns. Angles are kept as sine and cosine: cos(max(0, a - b)) is cos a cos b + sin a sin
+/// b, or 1 where a <= b.
 inline void importance(const LightTreeNode& node, const LightTreePoint& p, float* __restrict result) {
     for (int i = 0; i < kWidth; ++i) {
         // From the centre to the point; the sphere's half-angle as seen from there.
@@ -35,8 +35,7 @@ inline void importance(const LightTreeNode& node, const LightTreePoint& p, float
         const bool faced = cosAxis >= cosSpread;
         const float cosRest = faced ? 1.0f : cosAxis * cosSpread + sinAxis * sinSpread;
         const float sinRest = faced ? 0.0f : sinAxis * cosSpread - cosAxis * sinSpread;
-        const float cosLeaving =
-            inside || cosRest >= cosBall ? 1.0f : cosRest * cosBall + positive(sinRest) * sinBall;
+        const float cosLeaving = inside || cosRest >= cosBall ? 1.0f : cosRest * cosBall + positive(sinRest) * sinBall;
 
         // Between the point's normal and the direction to a light: the least that it can be.
         const float toLight = -(p.normalX * dx + p.normalY * dy + p.normalZ * dz) * inverse;
@@ -112,7 +111,7 @@ struct Walker {
     int point;
     uint32_t node;  ///< to be looked at next
     float u, probability, sinceFresh;
-    bool fresh;     ///< the second random number is unused
+    bool fresh;  ///< the second random number is unused
 };
 
 /// A point that has come to a group.
@@ -130,8 +129,8 @@ inline void prefetchNode(const LightTreeView& tree, uint32_t node) {
 enum class Step { Ends, Down, Draws };
 
 /// Chooses a child by the weights of the walker's node, or the tree at all at the root.
-inline Step descend(const LightTreeView& tree, const LightTreePoint& point, const float* weights, float elsewhere, float v,
-                    Walker& w, Drawer& drawer, LightTreeChoice& out) {
+inline Step descend(const LightTreeView& tree, const LightTreePoint& point, const float* weights, float elsewhere,
+                    float v, Walker& w, Drawer& drawer, LightTreeChoice& out) {
     const float sum = sumOf(weights);
     if (w.node == 0) {
         const float share = shareOf(sum, elsewhere);
@@ -216,8 +215,8 @@ void pickTogether(const LightTreeView& tree, const LightTreePoint* points, const
     }
 }
 
-void pick(const LightTreeView& tree, const LightTreePoint* points, const float* elsewhere, const float* u, const float* v,
-          LightTreeChoice* out, int count) {
+void pick(const LightTreeView& tree, const LightTreePoint* points, const float* elsewhere, const float* u,
+          const float* v, LightTreeChoice* out, int count) {
     for (int first = 0; first < count; first += kTogether)
         pickTogether(tree, points + first, elsewhere + first, u + first, v + first, out + first,
                      count - first < kTogether ? count - first : kTogether);

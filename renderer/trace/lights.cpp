@@ -91,7 +91,8 @@ void Lights::choose(std::span<const LightReceiver> receivers, const float* pickX
     const size_t count = receivers.size();
     std::fill_n(choices.begin(), count, Choice());
     if (picks_.empty()) return;
-    const bool byTree = count > 0 && receivers[0].sampling == LightSampling::Tree && entries_.size() > 1 && finiteCount_ > 0;
+    const bool byTree =
+        count > 0 && receivers[0].sampling == LightSampling::Tree && entries_.size() > 1 && finiteCount_ > 0;
     if (!byTree) {
         for (size_t i = 0; i < count; ++i) prefetch(choices[i] = choose(receivers[i], Vec2(pickX[i], pickY[i])));
     } else {
@@ -120,8 +121,9 @@ void Lights::choose(std::span<const LightReceiver> receivers, const float* pickX
                 const auto importanceOf = [&](uint32_t k) {
                     return k < kKept ? weights[i][k] : infiniteImportance(receivers[first + i], k);
                 };
-                choice = found[i].elsewhere ? chosenInfinite(found[i].u, found[i].probability, elsewhere[i], importanceOf)
-                                            : Choice{found[i].light, found[i].probability};
+                choice = found[i].elsewhere
+                             ? chosenInfinite(found[i].u, found[i].probability, elsewhere[i], importanceOf)
+                             : Choice{found[i].light, found[i].probability};
                 prefetch(choice);
             }
         }
@@ -162,15 +164,9 @@ bool Lights::samplePoint(const Choice& chosen, const LightReceiver& receiver, Ve
     bool reached = false;
     switch (entry.kind) {
         case Kind::Triangle: break;
-        case Kind::Body:
-            reached = sampleBody(tables_->bodies[entry.index], receiver, u, out);
-            break;
-        case Kind::Point:
-            reached = samplePunctual(points_[entry.index], receiver, out);
-            break;
-        case Kind::Directional:
-            reached = sampleSun(suns_[entry.index], receiver.time, u, out);
-            break;
+        case Kind::Body: reached = sampleBody(tables_->bodies[entry.index], receiver, u, out); break;
+        case Kind::Point: reached = samplePunctual(points_[entry.index], receiver, out); break;
+        case Kind::Directional: reached = sampleSun(suns_[entry.index], receiver.time, u, out); break;
         case Kind::Environment:
             out.direction = out.position = environment_.sample(u, out.pdf, out.skyPlace);
             out.distance = kInfinity;
@@ -231,8 +227,7 @@ bool Lights::samplePunctual(const Point& point, const LightReceiver& receiver, L
     if (!(distance2 > 0)) return false;
     out.distance = std::sqrt(distance2);
     out.direction = toLight / out.distance;
-    const float spot =
-        std::clamp(-glm::dot(axis, out.direction) * point.spotScale + point.spotOffset, 0.0f, 1.0f);
+    const float spot = std::clamp(-glm::dot(axis, out.direction) * point.spotScale + point.spotOffset, 0.0f, 1.0f);
     const float window =
         std::isfinite(point.range) ? std::clamp(1 - sqr(sqr(out.distance / point.range)), 0.0f, 1.0f) : 1;
     out.radiance = point.intensity * (sqr(spot) * window / distance2);
@@ -277,8 +272,8 @@ float Lights::pdfTriangle(uint32_t instance, uint32_t primitive, const LightRece
 
 size_t Lights::byteCount() const {
     return entries_.capacity() * sizeof(Entry) + triangles_.capacity() * sizeof(Triangle) +
-           (firstTriangle_.capacity() + firstEntry_.capacity() + triangleEntry_.capacity()) * sizeof(uint32_t) + picks_.byteCount() +
-           tree_.byteCount() + environment_.byteCount();
+           (firstTriangle_.capacity() + firstEntry_.capacity() + triangleEntry_.capacity()) * sizeof(uint32_t) +
+           picks_.byteCount() + tree_.byteCount() + environment_.byteCount();
 }
 
 }  // namespace lumi

@@ -62,8 +62,8 @@ public:
     /// A point of the chosen light by `u`. False if nothing can reach the receiver that way.
     bool samplePoint(const Choice& choice, const LightReceiver& receiver, Vec2 u, LightSample& out) const;
 
-    /// samplePoint() for each of the lanes: the light's columns of `lanes`, pdf 0 where nothing can reach the receiver. The
-    /// sky's radiance is 1, to be multiplied by what its place has. Choice i and receiver i are those of lane i.
+    /// samplePoint() for each of the lanes: the light's columns of `lanes`, pdf 0 where nothing can reach the receiver.
+    /// The sky's radiance is 1, to be multiplied by what its place has. Choice i and receiver i are those of lane i.
     void samplePoints(std::span<const Choice> choices, std::span<const LightReceiver> receivers, LightLanes& lights,
                       PlainLanes& lanes) const;
     bool isSky(uint32_t entry) const { return !environment_.black() && entry + 1 == entries_.size(); }
@@ -86,9 +86,9 @@ public:
     }
     float pdfBody(int body, const LightReceiver& receiver, const Vec3& direction, const Vec3& hitPosition) const;
 
-    /// Radiance that a path finds that leaves the scene along `direction` at `time`: the sky, and directional lights with an
-    /// angle unless `cameraRay` (they are not seen directly); weighted by `weight(pdf)` of the density of sample() for
-    /// each, which is asked for `receiver` (null: nothing samples lights, weights are 1).
+    /// Radiance that a path finds that leaves the scene along `direction` at `time`: the sky, and directional lights
+    /// with an angle unless `cameraRay` (they are not seen directly); weighted by `weight(pdf)` of the density of
+    /// sample() for each, which is asked for `receiver` (null: nothing samples lights, weights are 1).
     template <class Weight>
     Vec3 escaped(const Vec3& direction, float time, bool cameraRay, const LightReceiver* receiver,
                  Weight&& weight) const;
@@ -109,16 +109,21 @@ private:
     };
     /// All that a sample of it reads, in one line of the cache.
     struct alignas(64) Triangle {
-        enum : uint32_t { kDoubleSided = 1, kMirrored = 2, kMoves = 4, kTextured = 8 };  ///< textured: emission or alpha
+        enum : uint32_t {
+            kDoubleSided = 1,
+            kMirrored = 2,
+            kMoves = 4,
+            kTextured = 8
+        };  ///< textured: emission or alpha
         Vec3 corner, edge1, edge2;
-        Vec3 radiance{0};     ///< unless textured
+        Vec3 radiance{0};  ///< unless textured
         uint32_t instance = 0, primitive = 0;
-        float offset = 0;     ///< as Surface's
+        float offset = 0;  ///< as Surface's
         uint32_t flags = 0;
     };
     struct Point {
         Vec3 position, axis, intensity;
-        int track = -1;  ///< into tracks_ if it moves while the shutter is open
+        int track = -1;                                          ///< into tracks_ if it moves while the shutter is open
         float range = kInfinity, spotScale = 0, spotOffset = 1;  ///< angular fall-off: clamp(cos scale + offset)^2
     };
     struct Sun {
@@ -166,8 +171,9 @@ private:
     std::vector<Point> points_;
     std::vector<Sun> suns_;
     std::vector<std::vector<Mat4>> tracks_;  ///< frames of moving points and suns
-    std::vector<uint32_t> firstTriangle_;  ///< of each instance, into triangleEntry_; kNone: it does not emit
-    std::vector<uint32_t> firstEntry_;     ///< of each instance whose triangles all emit: entries in their order; else kNone
+    std::vector<uint32_t> firstTriangle_;    ///< of each instance, into triangleEntry_; kNone: it does not emit
+    std::vector<uint32_t>
+        firstEntry_;  ///< of each instance whose triangles all emit: entries in their order; else kNone
     std::vector<uint32_t> triangleEntry_;  ///< entry of each triangle of emitting instances, kNone if it does not emit
     uint32_t firstBody_ = 0;               ///< entry
     uint32_t finiteCount_ = 0;             ///< entries before this are in the tree, in its order

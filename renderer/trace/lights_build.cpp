@@ -23,9 +23,7 @@ float triangleLuminance(const MaterialRecord& material, const InstanceRecord& in
     const Vec2 size = glm::max(a, glm::max(b, c)) - glm::min(a, glm::min(b, c));
     const float extent = std::max(size.x, size.y);
     const Vec2 middle = (a + b + c) * (1.0f / 3.0f);
-    const auto filtered = [&](float width) {
-        return luminance(emission * Vec3(texture.sample(middle, width)));
-    };
+    const auto filtered = [&](float width) { return luminance(emission * Vec3(texture.sample(middle, width))); };
     return filtered(extent) + 0.05f * filtered(4 * extent) + 1e-4f * factor;
 }
 
@@ -191,8 +189,13 @@ void Lights::addPoints(const PosedScene& posed, Collected& collected) {
         if (light.type != LightType::Point && light.type != LightType::Spot) continue;
         const Mat4& frame = posed.lights[i].worldFromLight;
         const std::vector<Mat4>& frames = posed.lights[i].track;
-        Point point{Vec3(frame[3]), glm::normalize(-Vec3(frame[2])), light.intensity * light.power, addTrack(frames),
-                    light.range, 0, 1};
+        Point point{Vec3(frame[3]),
+                    glm::normalize(-Vec3(frame[2])),
+                    light.intensity * light.power,
+                    addTrack(frames),
+                    light.range,
+                    0,
+                    1};
         LightBounds bounds{{point.position, point.position}, point.axis, -1, 0, false, luminance(point.intensity)};
         float solidAngle = 4 * kPi;
         if (light.type == LightType::Spot) {

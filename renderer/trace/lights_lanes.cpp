@@ -8,7 +8,9 @@ void Lights::placeTriangle(const Triangle& triangle, LightLanes& lights, int i) 
     lights.first.set(i, triangle.corner), lights.second.set(i, triangle.edge1), lights.third.set(i, triangle.edge2);
     lights.value.set(i, triangle.radiance);
     lights.offset[i] = triangle.offset;
-    lights.side[i] = triangle.flags & Triangle::kDoubleSided ? 0.0f : triangle.flags & Triangle::kMirrored ? -1.0f : 1.0f;
+    lights.side[i] = triangle.flags & Triangle::kDoubleSided ? 0.0f
+                     : triangle.flags & Triangle::kMirrored  ? -1.0f
+                                                             : 1.0f;
 }
 
 void Lights::placePoint(const Point& point, LightLanes& lights, int i) {

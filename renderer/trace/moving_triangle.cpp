@@ -27,8 +27,7 @@ MovingTriangle::MovingTriangle(const InstanceRecord& instance, const ShutterTrac
         const DeformedVertices& a = *track.deformed[place.first];
         const DeformedVertices& b = *track.deformed[place.fraction > 0 ? place.first + 1 : place.first];
         const auto between = [&](const std::vector<Vec3>& from, const std::vector<Vec3>& to, Vec3* out) {
-            for (int c = 0; c < 3; ++c)
-                out[c] = from[t[c]] * (1 - place.fraction) + to[t[c]] * place.fraction;
+            for (int c = 0; c < 3; ++c) out[c] = from[t[c]] * (1 - place.fraction) + to[t[c]] * place.fraction;
         };
         between(a.positions, b.positions, positions_);
         instance_.positions = positions_;

@@ -139,8 +139,8 @@ int octantOf(const Vec3& d) {
     return (std::signbit(d.x) ? 4 : 0) + (std::signbit(d.y) ? 2 : 0) + (std::signbit(d.z) ? 1 : 0);
 }
 
-/// Places of rays such that those that start in one cell of a grid over `bounds`, and with `Octants` go towards one octant too,
-/// are neighbours, else in their order. `Side` cells along each axis.
+/// Places of rays such that those that start in one cell of a grid over `bounds`, and with `Octants` go towards one
+/// octant too, are neighbours, else in their order. `Side` cells along each axis.
 template <int Side, bool Octants>
 void sortRays(std::span<const BatchRay> rays, const Bounds3& bounds, uint16_t* order) {
     constexpr int kCells = Side * Side * Side, kKeys = kCells * (Octants ? 8 : 1);
@@ -204,7 +204,8 @@ void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std
                    Coherence coherence) {
     assert(hits.size() >= rays.size());
     if (RayRecorder* recorder = scene.recorder()) recorder->add(false, coherence, rays);
-    const bool together = coherence == Coherence::Coherent && scene.packetWidth() > 1, sorted = scene.strayPacketWidth() >= 8;
+    const bool together = coherence == Coherence::Coherent && scene.packetWidth() > 1,
+               sorted = scene.strayPacketWidth() >= 8;
     EmbreeScene::Context context = makeContext(scene, rays, together || sorted);
     if (together) {
         const int width = scene.packetWidth();

@@ -33,8 +33,9 @@ enum class Coherence { Coherent, Incoherent };
 void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<RawHit> hits,
                    Coherence coherence);
 
-/// blocked[i] = 1 if anything lies in (tmin, tmax) of ray i, else 0. In packets in small scenes, incoherent ones sorted by where
-/// they start; else all rays of a call walk the tree together, which is a tenth to a quarter faster than one after the other.
+/// blocked[i] = 1 if anything lies in (tmin, tmax) of ray i, else 0. In packets in small scenes, incoherent ones sorted
+/// by where they start; else all rays of a call walk the tree together, which is a tenth to a quarter faster than one
+/// after the other.
 void occludedRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std::span<uint8_t> blocked,
                   Coherence coherence);
 

@@ -21,7 +21,8 @@ public:
         for (size_t i = 0; i < batch.slots.size(); ++i) {
             const PathVertex& v = batch.vertices[i];
             PathLighting& sum = lighting_[batch.slots[i]];
-            const Vec3 emitted = v.throughput * v.emitted, sampled = v.throughput * (v.directDiffuse + v.directSpecular);
+            const Vec3 emitted = v.throughput * v.emitted,
+                       sampled = v.throughput * (v.directDiffuse + v.directSpecular);
             if (batch.depth == 0) {
                 sum.emission = emitted;
                 sum.direct = sampled;
@@ -42,11 +43,11 @@ private:
 /// What next-event estimation met at the first surface of paths, by their slots: where the light's sample was and what
 /// stood before it.
 struct ShadowSample {
-    int light = -1;            ///< entry of the light that was sampled; -1: none
-    bool infinite = false;     ///< `lightPosition` is a direction
+    int light = -1;         ///< entry of the light that was sampled; -1: none
+    bool infinite = false;  ///< `lightPosition` is a direction
     bool blocked = false;
     Vec3 lightPosition{0};
-    SurfacePoint blocker;      ///< nearest, if blocked
+    SurfacePoint blocker;  ///< nearest, if blocked
 };
 
 class ShadowObserver : public PathObserver {

@@ -27,8 +27,8 @@ struct PathState {
     Vec3 throughput{1};
     Vec3 radiance{0};
     LightReceiver scatter;  ///< the last scattering: what densities of light samples refer to
-    float scatterPdf = 0;     ///< per solid angle; 0 after a delta lobe
-    Vec3 absorption{0};       ///< 1/m, of the solid the path is in
+    float scatterPdf = 0;   ///< per solid angle; 0 after a delta lobe
+    Vec3 absorption{0};     ///< 1/m, of the solid the path is in
     SampleStream stream;
     uint32_t hash = 0;  ///< see pathHash()
     uint32_t slot = 0, sample = 0;
@@ -69,14 +69,14 @@ struct PathBatch {
     std::vector<uint32_t> active;  ///< indices of paths that have a ray, in order of their starts
     std::vector<BatchRay> rays;    ///< of the active paths
     std::vector<RawHit> hits;
-    std::vector<SurfaceGeometry> geometry;  ///< of hits on triangles, those of collected rows left out
-    std::vector<uint8_t> collected;         ///< 1 for rows that are in `plain` before they are shaded
-    PlainLanes plain;                          ///< vertices on plain surfaces
+    std::vector<SurfaceGeometry> geometry;       ///< of hits on triangles, those of collected rows left out
+    std::vector<uint8_t> collected;              ///< 1 for rows that are in `plain` before they are shaded
+    PlainLanes plain;                            ///< vertices on plain surfaces
     LightReceiver receivers[PlainLanes::kMost];  ///< of the lanes, and the next two
     Lights::Choice choices[PlainLanes::kMost];
     LightLanes lights;
-    bool absorbs = false;                      ///< some path is or was in a solid that absorbs
-    PlainTaps taps[PlainLanes::kMost];         ///< of the first lanes, whose textures are looked up
+    bool absorbs = false;               ///< some path is or was in a solid that absorbs
+    PlainTaps taps[PlainLanes::kMost];  ///< of the first lanes, whose textures are looked up
     std::vector<PendingLight> pending;
     std::vector<PendingSplit> splits;  ///< of the pending ones, if vertices are wanted
     std::vector<BatchRay> shadowRays;

@@ -1,4 +1,5 @@
-// Plain surfaces that only scatter diffusely, where the specular terms of plain_kernels.cpp are all zero: the same bits.
+// Plain surfaces that only scatter diffusely, where the specular terms of plain_kernels.cpp are all zero: the same
+// bits.
 #include "trace/plain_kernels.h"
 #include "trace/plain_lane_steps.h"
 

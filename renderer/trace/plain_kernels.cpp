@@ -113,8 +113,9 @@ void place(Lanes& lanes) {
     if (lanes.textured) placeTextures(lanes);
 }
 
-/// Direction across `normal` in which u grows and v stays, any length; 0 where there is none. `c1` and `c2` are the differences
-/// of v along the triangle's edges. With those of u instead, v falls and u stays, as along glTF's bitangent.
+/// Direction across `normal` in which u grows and v stays, any length; 0 where there is none. `c1` and `c2` are the
+/// differences of v along the triangle's edges. With those of u instead, v falls and u stays, as along glTF's
+/// bitangent.
 LUMI_LANE Lane3 uvGradient(const Lanes& lanes, int i, Lane3 normal, float c2, float c1) {
     const float determinant = lanes.edge1U[i] * lanes.edge2V[i] - lanes.edge1V[i] * lanes.edge2U[i];
     const float sign = determinant > 0 ? 1.0f : determinant < 0 ? -1.0f : 0.0f;
@@ -130,8 +131,7 @@ LUMI_LANE Lane3 mappedNormal(const Lanes& lanes, int i, Lane3 smooth) {
     const Lane3 bitangent =
         choose(derived, uvGradient(lanes, i, smooth, lanes.edge2U[i], lanes.edge1U[i]), at(lanes.bitangent, i));
     const float lengthT = std::sqrt(dot(tangent, tangent)), lengthB = std::sqrt(dot(bitangent, bitangent));
-    const bool mapped =
-        (lanes.tangents[i] != Lanes::kNone) & (lengthT > 0) & (lengthB > 0) & finite(lengthT + lengthB);
+    const bool mapped = (lanes.tangents[i] != Lanes::kNone) & (lengthT > 0) & (lengthB > 0) & finite(lengthT + lengthB);
     const Lane3 texel = at(lanes.mapTexel, i);
     const Lane3 sum = tangent * (texel.x / (mapped ? lengthT : 1.0f)) +
                       bitangent * (texel.y / (mapped ? lengthB : 1.0f)) + smooth * texel.z;
@@ -140,8 +140,8 @@ LUMI_LANE Lane3 mappedNormal(const Lanes& lanes, int i, Lane3 smooth) {
     return choose(usable, sum * (1 / (usable ? length : 1.0f)), smooth);
 }
 
-/// The normal that shades: `normal` on wo's side, and bent so that the mirror direction stays above the surface [Keller et
-/// al. 2017].
+/// The normal that shades: `normal` on wo's side, and bent so that the mirror direction stays above the surface [Keller
+/// et al. 2017].
 LUMI_LANE Lane3 keptAbove(const Lanes& lanes, int i, Lane3 normal) {
     // Height above the surface, in half precision, that the reflection off a bent normal keeps.
     constexpr float kLeastHeight = 1e-3f;
@@ -348,7 +348,8 @@ void scatter(Lanes& lanes, const AlbedoView& view, const PlainSettings& settings
         const float whole = diffuse ? 1.0f : 0.0f;
         const auto shareOf = [&](float d, float s) { return d + s > 0 && !mirror ? d / (d + s) : whole; };
         put(lanes.diffuseShare, i,
-            {shareOf(f.diffuse.x, f.specular.x), shareOf(f.diffuse.y, f.specular.y), shareOf(f.diffuse.z, f.specular.z)});
+            {shareOf(f.diffuse.x, f.specular.x), shareOf(f.diffuse.y, f.specular.y),
+             shareOf(f.diffuse.z, f.specular.z)});
         const uint32_t lobe = mirror ? Lanes::kMirrors : diffuse ? Lanes::kDiffuse : Lanes::kReflects;
         lanes.next[i] = goes ? lobe : Lanes::kEnds;
     }

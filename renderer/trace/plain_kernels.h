@@ -29,8 +29,8 @@ struct PlainLobeKernels {
 
 LUMI_KERNELS(PlainKernels, plain)
 LUMI_KERNELS(PlainLobeKernels, plainLobe)
-/// For lanes none of which reflects like a mirror or a gloss (PlainLanes::glossy): what plainLobeKernels() would give, bit for
-/// bit, of what is read after them.
+/// For lanes none of which reflects like a mirror or a gloss (PlainLanes::glossy): what plainLobeKernels() would give,
+/// bit for bit, of what is read after them.
 LUMI_KERNELS(PlainLobeKernels, plainDiffuse)
 
 }  // namespace lumi

@@ -2,8 +2,8 @@
 #include "trace/lane_math.h"
 #include "trace/plain_lanes.h"
 
-/// Steps that kernels of plain surfaces share. Include only from kernel files: everything here has internal linkage, each
-/// instruction set compiles its own copy.
+/// Steps that kernels of plain surfaces share. Include only from kernel files: everything here has internal linkage,
+/// each instruction set compiles its own copy.
 namespace lumi {
 namespace {
 
@@ -29,7 +29,8 @@ LUMI_LANE void putLight(PlainLanes& lanes, int i, Lane3 diffuseScattered, Lane3 
     const float usable = pdf > 0 ? pdf : 1.0f, ratio = scatterPdf / usable;
     const float weight = (mis && lanes.lightWeighs[i] > 0 ? 1 / (1 + ratio * ratio) : 1.0f) / usable;
     const Lane3 radiance = at(lanes.lightRadiance, i) * weight;
-    const Lane3 diffuse = diffuseScattered * radiance, specular = specularScattered * radiance, sum = diffuse + specular;
+    const Lane3 diffuse = diffuseScattered * radiance, specular = specularScattered * radiance,
+                sum = diffuse + specular;
     const Lane3 contribution = sum * at(lanes.throughput, i);
     put(lanes.lightDiffuse, i, diffuse), put(lanes.lightSpecular, i, specular);
     put(lanes.lightContribution, i, contribution);
@@ -45,8 +46,8 @@ LUMI_LANE void putLight(PlainLanes& lanes, int i, Lane3 diffuseScattered, Lane3 
     lanes.lightValid[i] = reaches ? (finite(contribution) ? 1.0f : -1.0f) : 0.0f;
 }
 
-/// The continuation in local direction `wi`; false if the path ends: nothing scatters there (`some`), the direction is below
-/// the surface or its plane, or Russian roulette says so.
+/// The continuation in local direction `wi`; false if the path ends: nothing scatters there (`some`), the direction is
+/// below the surface or its plane, or Russian roulette says so.
 LUMI_LANE bool putContinuation(PlainLanes& lanes, int i, const LaneFrame& frame, Lane3 wi, Lane3 weight, bool some,
                                bool roulette) {
     const Lane3 direction = unit(toWorld(frame, wi));

@@ -3,12 +3,13 @@
 
 namespace lumi {
 
-/// Path vertices on plain surfaces: no layers, nothing transmitted. They are most vertices of most scenes, so they are shaded
-/// many at a time, a lane each, by kernels (plain_kernels.h) that do what Bsdf and the integrator do one by one.
+/// Path vertices on plain surfaces: no layers, nothing transmitted. They are most vertices of most scenes, so they are
+/// shaded many at a time, a lane each, by kernels (plain_kernels.h) that do what Bsdf and the integrator do one by one.
 /// Members are columns over the lanes. World space, unless said otherwise.
 struct alignas(64) PlainLanes {
     static constexpr int kMost = 256;
-    /// A cache line longer than it need be: at a power of two, all columns of a lane would share a few sets of the cache.
+    /// A cache line longer than it need be: at a power of two, all columns of a lane would share a few sets of the
+    /// cache.
     static constexpr int kStride = kMost + 16;
     using Column = float[kStride];
     using Words = uint32_t[kStride];
@@ -34,19 +35,19 @@ struct alignas(64) PlainLanes {
 
     // The triangle that was hit, as `place` and `bend` read it.
     Column3 corner, edge1, edge2;
-    Column3 vertexNormal;       ///< interpolated, any length; 0: flat
-    Column flip;                ///< 1; -1 for mirrored instances, whose front faces are turned
-    Column across, along;       ///< barycentrics of the second and third corner
-    Column width;               ///< of the path's footprint on arrival, metres
-    Column cornerU, cornerV, edge1U, edge1V, edge2U, edge2V;  ///< texture coordinates
-    Column textureU, textureV, textureWidth;                  ///< at the point, and the footprint's width there
-    Column area;                ///< of the triangle, m^2
-    Column front;               ///< 1: wo is on the front side; else 0
-    Column3 smoothNormal;       ///< unit, of the front face
-    Column tangents;            ///< for the normal map: kNone, kGiven, kDerived
+    Column3 vertexNormal;  ///< interpolated, any length; 0: flat
+    Column flip;           ///< 1; -1 for mirrored instances, whose front faces are turned
+    Column across, along;  ///< barycentrics of the second and third corner
+    Column width;          ///< of the path's footprint on arrival, metres
+    Column cornerU, cornerV, edge1U, edge1V, edge2U, edge2V;     ///< texture coordinates
+    Column textureU, textureV, textureWidth;                     ///< at the point, and the footprint's width there
+    Column area;                                                 ///< of the triangle, m^2
+    Column front;                                                ///< 1: wo is on the front side; else 0
+    Column3 smoothNormal;                                        ///< unit, of the front face
+    Column tangents;                                             ///< for the normal map: kNone, kGiven, kDerived
     static constexpr float kNone = 0, kGiven = 1, kDerived = 2;  ///< the last: along growing u and falling v
-    Column3 tangent, bitangent; ///< any length, if they are given
-    Column3 mapTexel;           ///< of the normal map, scale applied
+    Column3 tangent, bitangent;                                  ///< any length, if they are given
+    Column3 mapTexel;                                            ///< of the normal map, scale applied
 
     // Where the path is: as in Surface and BsdfInputs.
     Column3 position, geometricNormal, normal, wo, throughput;
@@ -60,8 +61,8 @@ struct alignas(64) PlainLanes {
     Column lobeX, bsdfX, bsdfY, lightX, lightY, lightPointX, lightPointY, rouletteX;
 
     // The scattering function, made by `prepare`; names as in BaseBsdf.
-    Column3 axisX, axisY;  ///< of the local frame
-    Column3 woLocal, start;  ///< `start` is where rays leave the surface
+    Column3 axisX, axisY;           ///< of the local frame
+    Column3 woLocal, start;         ///< `start` is where rays leave the surface
     Column alpha, lambdaO, smooth;  ///< smooth: 1 or 0
     Column tableRow;                ///< fractional row of the table of albedos
     Column3 f0, diffuseScale, multipleScale;
@@ -78,8 +79,8 @@ struct alignas(64) PlainLanes {
 
     // The continuation.
     Column3 nextDirection, weight, diffuseShare;
-    Column pdf;       ///< 0 for mirrors
-    Words next;       ///< kEnds or the lobe drawn
+    Column pdf;  ///< 0 for mirrors
+    Words next;  ///< kEnds or the lobe drawn
     static constexpr uint32_t kEnds = 0, kDiffuse = 1, kReflects = 2, kMirrors = 3;
 };
 

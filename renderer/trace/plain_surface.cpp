@@ -31,7 +31,8 @@ void collectTextureCoordinates(const Vec2* uv, const UVec3& t, PlainLanes& lanes
 
 }  // namespace
 
-void collectTriangle(const InstanceRecord& r, const MaterialRecord& material, const RawHit& hit, PlainLanes& lanes, int i) {
+void collectTriangle(const InstanceRecord& r, const MaterialRecord& material, const RawHit& hit, PlainLanes& lanes,
+                     int i) {
     const UVec3 t = r.triangles[hit.primitive];
     Vec3 corners[3] = {r.positions[t.x], r.positions[t.y], r.positions[t.z]};
     if (!r.inWorld)

@@ -19,8 +19,8 @@ struct PlainTaps {
 };
 
 /// Triangle and material of a hit that isPlain(), for PlainKernels::place.
-void collectTriangle(const InstanceRecord& instance, const MaterialRecord& material, const RawHit& hit, PlainLanes& lanes,
-                     int lane);
+void collectTriangle(const InstanceRecord& instance, const MaterialRecord& material, const RawHit& hit,
+                     PlainLanes& lanes, int lane);
 
 /// Where the textures of a lane are read, after PlainKernels::place; asks the caches for the texels. `between`: two mip
 /// levels are blended, else the nearest one is read.

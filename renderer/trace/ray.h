@@ -12,9 +12,9 @@ struct Ray {
     float tmin = 0;
     Vec3 direction{0, 0, -1};  ///< unit
     float tmax = kInfinity;
-    float time = 0;            ///< 0 at shutter open, 1 at close
-    /// A camera's: it does not see the back faces of single-sided opaque materials, as glTF asks. For all other rays every
-    /// face is solid, so that what such a surface casts and blocks does not depend on the side.
+    float time = 0;  ///< 0 at shutter open, 1 at close
+    /// A camera's: it does not see the back faces of single-sided opaque materials, as glTF asks. For all other rays
+    /// every face is solid, so that what such a surface casts and blocks does not depend on the side.
     bool fromCamera = false;
 };
 

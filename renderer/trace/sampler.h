@@ -8,8 +8,8 @@ namespace lumi {
 ///   Sobol: Owen-scrambled (0,2)-pairs, padded, with a hash-based scramble and shuffle for each pixel and pair of
 ///     dimensions [Burley 2020, "Practical Hash-based Owen Scrambling"].
 ///   Halton: bases 2, 3, 5, ... with a Cranley-Patterson rotation for each pixel; the index wraps at the loop length.
-///   Independent: hashed, for tests of statistics.
-///   BlueNoise: one Owen-scrambled Sobol sequence for all pixels, rotated in each by a blue-noise tile that is moved for
+///   Independent: hashed, for tests of statistics. BlueNoise: one Owen-scrambled Sobol sequence for all pixels, rotated
+///   in each by a blue-noise tile that is moved for
 ///     every dimension, so that neighbours err differently and the error has few low frequencies
 ///     [Georgiev & Fajardo 2016, "Blue-noise Dithered Sampling"]. Made for one sample a pixel and frame: over several
 ///     the rotated points err more than those of Sobol.
@@ -29,9 +29,9 @@ public:
 
 private:
     SamplerKind kind_ = SamplerKind::Sobol;
-    uint32_t scramble_ = 0;  ///< hash of key and seed; of the seed alone for BlueNoise
-    uint32_t index_ = 0;     ///< sample index, wrapped for Halton
-    uint32_t x_ = 0, y_ = 0; ///< of the key, for BlueNoise
+    uint32_t scramble_ = 0;   ///< hash of key and seed; of the seed alone for BlueNoise
+    uint32_t index_ = 0;      ///< sample index, wrapped for Halton
+    uint32_t x_ = 0, y_ = 0;  ///< of the key, for BlueNoise
 };
 
 /// Dimensions by use. Camera dimensions first, then kVertexDimensions for each vertex.

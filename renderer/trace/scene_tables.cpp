@@ -48,9 +48,10 @@ bool shareTaps(const Texture& a, const Texture& b) {
 
 /// Is the material plain? Then its textures are added.
 void addViews(MaterialRecord& r, std::vector<TextureView>& textures) {
-    constexpr uint32_t kViewed = MaterialRecord::kBaseColor | MaterialRecord::kMetallicRoughness | MaterialRecord::kNormal;
-    if (r.layered || r.transmission > 0 || (r.textures & ~(kViewed | MaterialRecord::kEmission |
-                                                                     MaterialRecord::kTransmission)) != 0)
+    constexpr uint32_t kViewed =
+        MaterialRecord::kBaseColor | MaterialRecord::kMetallicRoughness | MaterialRecord::kNormal;
+    if (r.layered || r.transmission > 0 ||
+        (r.textures & ~(kViewed | MaterialRecord::kEmission | MaterialRecord::kTransmission)) != 0)
         return;
     const Texture* const all[] = {&r.source->baseColorTexture, &r.source->metallicRoughnessTexture,
                                   &r.source->normalTexture};
@@ -98,10 +99,8 @@ InstanceRecord makeInstance(const PosedScene& posed, const EmbreeScene& embree, 
     r.restPositions = dataOrNull(mesh.positions);
     r.uv[0] = dataOrNull(mesh.uv[0]), r.uv[1] = dataOrNull(mesh.uv[1]);
     r.colours = dataOrNull(mesh.colours);
-    if (instance.material >= 0)
-        r.material = static_cast<uint32_t>(instance.material);
-    else
-        r.material = mesh.material, r.triangleMaterial = dataOrNull(mesh.triangleMaterial);
+    if (instance.material >= 0) r.material = static_cast<uint32_t>(instance.material);
+    else r.material = mesh.material, r.triangleMaterial = dataOrNull(mesh.triangleMaterial);
     if (const Vec3* world = embree.worldPositions(index)) {
         r.positions = world;
         r.inWorld = true;

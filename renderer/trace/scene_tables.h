@@ -45,9 +45,9 @@ struct TextureView {
     std::array<Level, kMostLevels> levels;
     int levelCount = 0;
     Wrap wrapU = Wrap::Repeat, wrapV = Wrap::Repeat;
-    const float* decode = nullptr;              ///< linear values of the RGB codes; null: they are linear
-    Vec2 uvX{1, 0}, uvY{0, 1}, offset{0};       ///< rows of the map from mesh coordinates
-    float texelsPerUnit = 1;                    ///< of mesh coordinates, level 0
+    const float* decode = nullptr;         ///< linear values of the RGB codes; null: they are linear
+    Vec2 uvX{1, 0}, uvY{0, 1}, offset{0};  ///< rows of the map from mesh coordinates
+    float texelsPerUnit = 1;               ///< of mesh coordinates, level 0
 };
 
 /// A material without what only its textures need.
@@ -70,8 +70,8 @@ struct MaterialRecord {
     Vec3 absorption{0};  ///< 1/m inside a solid (Beer-Lambert)
     const Material* source = nullptr;
 
-    /// Neither layers nor transmission, and no textures but emission's and the three below, all of one uv set: vertices on
-    /// it are shaded by kernels.
+    /// Neither layers nor transmission, and no textures but emission's and the three below, all of one uv set: vertices
+    /// on it are shaded by kernels.
     bool plain = false;
     bool sharedTaps = false;  ///< the three are alike but for their texels
     int uvSet = 0;
@@ -82,7 +82,8 @@ struct MaterialRecord {
 /// A light with a body, by index into Scene::lights.
 struct BodyRecord {
     LightShape shape, previousShape;
-    std::vector<LightShape> shutterShapes, previousShutterShapes;  ///< at moments of the open shutter; empty: it is still
+    std::vector<LightShape> shutterShapes,
+        previousShutterShapes;  ///< at moments of the open shutter; empty: it is still
     int light = -1;
     uint32_t instance = kNone;  ///< that shows it; kNone: it cannot be hit
     static constexpr uint32_t kNone = ~0u;

@@ -73,7 +73,8 @@ void PathSettings::describe(ParameterVisitor& v) {
         v.choice("path.regularize-after", regularizeAfter,
                  {.label = "After",
                   .options = {"diffuse", "any"},
-                  .help = "Which scattering comes first: a diffuse one, so that reflections in reflections stay sharp, or any, as "
+                  .help = "Which scattering comes first: a diffuse one, so that reflections in reflections stay sharp, "
+                          "or any, as "
                           "[Schied17, sec. 3] has it.",
                   .redo = Redo::Samples});
         v.number("path.regularize-roughness", regularizeRoughness,
@@ -82,14 +83,16 @@ void PathSettings::describe(ParameterVisitor& v) {
                   .max = 1,
                   .help = "Roughness that lobes have at least after it, in the first sample.",
                   .redo = Redo::Samples});
-        v.number("path.regularize-decay", regularizeDecay,
-                 {.label = "Decay",
-                  .min = 0,
-                  .max = 0.5,
-                  .help = "Sample n uses the least roughness times (n + 1)^-decay, so that the mean converges to the "
-                          "image without regularization. Frames of a stream are samples too, so that it fades there as well: 0 "
-                          "keeps its strength, which is what filters of a stream expect.",
-                  .redo = Redo::Samples});
+        v.number(
+            "path.regularize-decay", regularizeDecay,
+            {.label = "Decay",
+             .min = 0,
+             .max = 0.5,
+             .help =
+                 "Sample n uses the least roughness times (n + 1)^-decay, so that the mean converges to the "
+                 "image without regularization. Frames of a stream are samples too, so that it fades there as well: 0 "
+                 "keeps its strength, which is what filters of a stream expect.",
+             .redo = Redo::Samples});
     });
     v.choice("sampler.kind", sampler,
              {.label = "Sampler",

@@ -14,22 +14,24 @@ enum class Jitter { Auto, PerFrame, PerPixel, None };
 
 /// Settings of light transport: `path.*` and `sampler.*` in parameter ids.
 struct PathSettings {
-    int maxDepth = 6;             ///< surfaces a path may scatter at; 1 is direct light only
-    int maxDiffuseDepth = 6;      ///< of these, diffuse scatterings
-    int maxSpecularDepth = 6;     ///< of these, specular reflections and transmissions
-    int rouletteDepth = 3;        ///< scatterings before Russian roulette may end a path
+    int maxDepth = 6;          ///< surfaces a path may scatter at; 1 is direct light only
+    int maxDiffuseDepth = 6;   ///< of these, diffuse scatterings
+    int maxSpecularDepth = 6;  ///< of these, specular reflections and transmissions
+    int rouletteDepth = 3;     ///< scatterings before Russian roulette may end a path
     bool roulette = true;
-    bool clamp = false;           ///< limit each path contribution after the first surface
-    float clampRadiance = 10;     ///< W/(m^2 sr)
+    bool clamp = false;        ///< limit each path contribution after the first surface
+    float clampRadiance = 10;  ///< W/(m^2 sr)
     DirectStrategy strategy = DirectStrategy::Mis;
     LightSampling lightSampling = LightSampling::Tree;  ///< how a light is chosen
     bool multipleScattering = true;  ///< between the facets of rough reflecting surfaces [Kulla & Conty 2017]
-    bool regularize = false;      ///< path-space regularization [Kaplanyan 2013]: widen lobes after a scattering
+    bool regularize = false;         ///< path-space regularization [Kaplanyan 2013]: widen lobes after a scattering
     RegularizeAfter regularizeAfter = RegularizeAfter::Diffuse;
     float regularizeRoughness = 0.3f;  ///< least roughness of the first sample
-    float regularizeDecay = 1.0f / 6;  ///< of sample n: regularizeRoughness (n + 1)^-regularizeDecay; 0 stays, as a stream of frames wants it
+    float regularizeDecay =
+        1.0f /
+        6;  ///< of sample n: regularizeRoughness (n + 1)^-regularizeDecay; 0 stays, as a stream of frames wants it
     SamplerKind sampler = SamplerKind::Sobol;
-    int haltonLoop = 16;          ///< Halton: the sequence repeats after this many samples
+    int haltonLoop = 16;  ///< Halton: the sequence repeats after this many samples
 
     /// Roughness that lobes have at least after a scattering, for this sample of a pixel. With a decay it falls
     /// below that of mirrors in the end, so that the mean converges to the image without it.

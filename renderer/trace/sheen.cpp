@@ -65,7 +65,8 @@ struct Tables {
     Tables() {
         unlimited.fill([](float roughness, float c) { return integral(roughness, c, [](float) { return 1.0f; }); });
         limited.fill([&](float roughness, float c) {
-            return integral(roughness, c, [&](float cosI) { return 1 / excess(roughness, cosI); }) / excess(roughness, c);
+            return integral(roughness, c, [&](float cosI) { return 1 / excess(roughness, cosI); }) /
+                   excess(roughness, c);
         });
     }
 
@@ -98,7 +99,9 @@ const Tables& tables() {
 }  // namespace
 
 Sheen::Sheen(const LayerInputs& layers, const Vec3& wo)
-    : color_(saturate(layers.sheenColor)), wo_(wo), roughness_(std::max(saturate(layers.sheenRoughness), kLeastRoughness)) {
+    : color_(saturate(layers.sheenColor)),
+      wo_(wo),
+      roughness_(std::max(saturate(layers.sheenRoughness), kLeastRoughness)) {
     lambdaO_ = lambda(sqr(roughness_), wo.z);
     excessO_ = tables().excess(roughness_, wo.z);
     directional_ = std::min(tables().limited.at(roughness_, wo.z), 1.0f);

@@ -84,10 +84,8 @@ void SignalsObserver::bounce(const BounceBatch& batch) {
         const Vec3 diffuse = v.throughput * v.directDiffuse, specular = v.throughput * v.directSpecular;
         if (batch.depth == 0) {
             if (geometry_ && batch.samples[i] == static_cast<uint32_t>(sampling_.firstSample)) {
-                if (v.point.valid())
-                    writeGeometry(batch.slots[i], v);
-                else
-                    writeSky(batch.slots[i], v);
+                if (v.point.valid()) writeGeometry(batch.slots[i], v);
+                else writeSky(batch.slots[i], v);
             }
             const bool sky = !v.point.valid();
             sums.albedo += sky ? Vec3(1) : v.albedo;
@@ -187,7 +185,8 @@ void SignalsObserver::writeSky(uint32_t slot, const PathVertex& v) {
     if (wanted_.has(Signal::InverseDepth)) signals_[Signal::InverseDepth].at(0, x, y) = 0;
     if (wanted_.has(Signal::DepthGradient))
         for (int c = 0; c < 2; ++c) signals_[Signal::DepthGradient].at(c, x, y) = 0;
-    set3(Signal::Motion, x, y, skyMotion(sampling_.cameraAt(v.point.time), sampling_.previousCameraAt(v.point.time), -v.wo));
+    set3(Signal::Motion, x, y,
+         skyMotion(sampling_.cameraAt(v.point.time), sampling_.previousCameraAt(v.point.time), -v.wo));
     if (wanted_.has(Signal::Roughness)) signals_[Signal::Roughness].at(0, x, y) = 1;
     if (wanted_.has(Signal::ObjectId)) signals_.ids(Signal::ObjectId).at(0, x, y) = 0;
     if (wanted_.has(Signal::MaterialId)) signals_.ids(Signal::MaterialId).at(0, x, y) = 0;

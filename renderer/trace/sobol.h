@@ -3,8 +3,8 @@
 
 #include "math/hash.h"
 
-/// Owen-scrambled (0,2)-pairs [Burley 2020], for the sampler and its kernels alike: everything here has internal linkage,
-/// each instruction set compiles its own copy.
+/// Owen-scrambled (0,2)-pairs [Burley 2020], for the sampler and its kernels alike: everything here has internal
+/// linkage, each instruction set compiles its own copy.
 ///
 /// Bits of an index or a coordinate are kept "digits first": bit k is the k-th digit after the binary point. Owen
 /// scrambling lets each digit be flipped by a hash of the digits before it; digits first, a product or a sum carries

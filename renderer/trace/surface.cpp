@@ -40,7 +40,8 @@ TangentFrame tangentFrame(const InstanceRecord& r, uint32_t primitive, const UVe
                           const Vec3& edge1, const Vec3& edge2, const Vec3& worldNormal, const Texture& texture) {
     const Mat3 directions(r.worldFromObject);
     if (r.tangents) {
-        const Vec3 tangent = r.deformedTangents ? interpolate(r.deformedTangents, t, b) : Vec3(interpolate(r.tangents, t, b));
+        const Vec3 tangent =
+            r.deformedTangents ? interpolate(r.deformedTangents, t, b) : Vec3(interpolate(r.tangents, t, b));
         const float hand = r.tangents[t.x].w < 0 ? -1.0f : 1.0f;
         return {directions * tangent, directions * (glm::cross(objectNormal, tangent) * hand)};
     }
@@ -59,7 +60,8 @@ TangentFrame tangentFrame(const InstanceRecord& r, uint32_t primitive, const UVe
 
 /// A direction of the tangent plane in the plane of `local`; its x without a tangent frame.
 Vec2 alongSurface(const Frame& local, const TangentFrame& frame, Vec2 direction) {
-    const Vec3 world = quickUnitOr(frame.tangent, Vec3(0)) * direction.x + quickUnitOr(frame.bitangent, Vec3(0)) * direction.y;
+    const Vec3 world =
+        quickUnitOr(frame.tangent, Vec3(0)) * direction.x + quickUnitOr(frame.bitangent, Vec3(0)) * direction.y;
     const Vec2 along(local.toLocal(world));
     return glm::length(along) > 1e-6f ? along : Vec2(1, 0);
 }
@@ -120,8 +122,8 @@ SurfacePoint surfacePoint(const SceneTables& tables, const RawHit& hit, const Ve
 namespace {
 
 /// The two below of a triangle of `r`, whose corners are its vertices `t`.
-SurfaceGeometry geometryOf(const SceneTables& tables, const InstanceRecord& r, const UVec3& t, const SurfacePoint& point,
-                           const Vec3& wo, float width) {
+SurfaceGeometry geometryOf(const SceneTables& tables, const InstanceRecord& r, const UVec3& t,
+                           const SurfacePoint& point, const Vec3& wo, float width) {
     const Vec2 b = point.barycentrics;
 
     // Position and geometric normal, in the space of the vertices, then in the world.
@@ -186,7 +188,8 @@ Surface surfaceOf(const SceneTables& tables, const InstanceRecord& r, const UVec
         const TangentFrame frame = frameOf(texture);
         return mappedNormal(texture, scale, lookup, frame.tangent, frame.bitangent, unmapped);
     };
-    if (material.textures & MaterialRecord::kNormal) smooth = mapped(material.source->normalTexture, material.source->normalScale);
+    if (material.textures & MaterialRecord::kNormal)
+        smooth = mapped(material.source->normalTexture, material.source->normalScale);
     const auto seen = [&](const Vec3& front) {
         const Vec3 shading = s.frontFace ? front : -front;
         // A normal that points away from the geometric one altogether is a modelling slip.
@@ -263,7 +266,8 @@ Vec3 offsetOrigin(const Vec3& position, const Vec3& normal, float extra) {
     Vec3 result;
     for (int c = 0; c < 3; ++c) {
         const auto steps = static_cast<int32_t>(kIntScale * normal[c]);
-        const float moved = std::bit_cast<float>(std::bit_cast<int32_t>(position[c]) + (position[c] < 0 ? -steps : steps));
+        const float moved =
+            std::bit_cast<float>(std::bit_cast<int32_t>(position[c]) + (position[c] < 0 ? -steps : steps));
         result[c] = std::abs(position[c]) < kNearOrigin ? position[c] + kFloatScale * normal[c] : moved;
     }
     return result + normal * extra;

@@ -87,7 +87,8 @@ Vec3 mappedNormal(const Texture& texture, float scale, TextureLookups& lookup, c
     const float lengthT = glm::length(tangent), lengthB = glm::length(bitangent);
     if (!(lengthT > 0) || !(lengthB > 0) || !std::isfinite(lengthT + lengthB)) return normal;
     const Vec3 texel = Vec3(lookup(texture)) * 2.0f - Vec3(1);
-    const Vec3 mapped = tangent * (texel.x * scale / lengthT) + bitangent * (texel.y * scale / lengthB) + normal * texel.z;
+    const Vec3 mapped =
+        tangent * (texel.x * scale / lengthT) + bitangent * (texel.y * scale / lengthB) + normal * texel.z;
     const float length = glm::length(mapped);
     return length > 1e-6f && std::isfinite(length) ? mapped / length : normal;
 }

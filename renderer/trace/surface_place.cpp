@@ -59,8 +59,9 @@ Vec3 previousSurfacePosition(const SceneTables& tables, const PosedScene& posed,
             const TrackPlace at = trackPlace(track.deformed.size(), point.time);
             place = placeAmong(track.deformed[at.first]->positions.data(), t, point.barycentrics);
             if (at.fraction > 0)
-                place = glm::mix(place, placeAmong(track.deformed[at.first + 1]->positions.data(), t, point.barycentrics),
-                                 at.fraction);
+                place =
+                    glm::mix(place, placeAmong(track.deformed[at.first + 1]->positions.data(), t, point.barycentrics),
+                             at.fraction);
         }
         return transformPoint(track.worldFromObjectAt(point.time), place);
     }

@@ -13,7 +13,11 @@ class TextureLookups {
 public:
     TextureLookups(const InstanceRecord& instance, const UVec3& triangle, Vec2 barycentrics, float footprint,
                    float twiceArea, MipFilter mips)
-        : instance_(instance), triangle_(triangle), b_(barycentrics), footprint_(footprint), twiceArea_(twiceArea),
+        : instance_(instance),
+          triangle_(triangle),
+          b_(barycentrics),
+          footprint_(footprint),
+          twiceArea_(twiceArea),
           mips_(mips) {}
 
     Vec4 operator()(const Texture& texture) {

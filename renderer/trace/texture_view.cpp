@@ -15,7 +15,8 @@ namespace {
 
 /// Mesh coordinates into the texture's; those that are no place in it become 0.
 Vec2 usable(const TextureView& view, float u, float v) {
-    const float x = view.uvX.x * u + view.uvX.y * v + view.offset.x, y = view.uvY.x * u + view.uvY.y * v + view.offset.y;
+    const float x = view.uvX.x * u + view.uvX.y * v + view.offset.x,
+                y = view.uvY.x * u + view.uvY.y * v + view.offset.y;
     constexpr float kMost = 1e6f;
     return std::abs(x) < kMost && std::abs(y) < kMost ? Vec2(x, y) : Vec2(0);
 }
@@ -26,7 +27,8 @@ TexelTaps tapsIn(const TextureView& view, Vec2 uv, int level) {
     const uint32_t top = static_cast<uint32_t>(y.first) * static_cast<uint32_t>(in.width);
     const uint32_t bottom = static_cast<uint32_t>(y.second) * static_cast<uint32_t>(in.width);
     const auto left = static_cast<uint32_t>(x.first), right = static_cast<uint32_t>(x.second);
-    return {level, {4 * (top + left), 4 * (top + right), 4 * (bottom + left), 4 * (bottom + right)}, x.weight, y.weight};
+    return {
+        level, {4 * (top + left), 4 * (top + right), 4 * (bottom + left), 4 * (bottom + right)}, x.weight, y.weight};
 }
 
 __m128 linearTexel(const uint8_t* p) {

@@ -72,7 +72,8 @@ Vec3 ThinFilm::reflectance(float cosTheta) const {
     Vec3 sum = Vec3(upper) + incoherent, order = incoherent - Vec3(passed);
     for (int m = 1; m <= 2; ++m) {
         order *= amplitude;
-        sum += order * 2.0f * rec709(sensitivity(static_cast<float>(m) * pathDifference, static_cast<float>(m) * phase_));
+        sum +=
+            order * 2.0f * rec709(sensitivity(static_cast<float>(m) * pathDifference, static_cast<float>(m) * phase_));
     }
     return bare + (glm::clamp(sum, Vec3(0), Vec3(1)) - bare) * presence_;
 }

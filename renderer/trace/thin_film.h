@@ -20,11 +20,11 @@ public:
 
 private:
     float ior_ = 1, thickness_ = 0;
-    float presence_ = 0;     ///< 1 of all but the thinnest films
-    Vec3 baseF0_{0};         ///< of the base in air
-    float filmF0_ = 0;       ///< of the film's upper face
-    Vec3 innerF0_{0};        ///< of the base seen from inside the film
-    Vec3 phase_{0};          ///< by which both reflections inside the film shift the wave
+    float presence_ = 0;  ///< 1 of all but the thinnest films
+    Vec3 baseF0_{0};      ///< of the base in air
+    float filmF0_ = 0;    ///< of the film's upper face
+    Vec3 innerF0_{0};     ///< of the base seen from inside the film
+    Vec3 phase_{0};       ///< by which both reflections inside the film shift the wave
 };
 
 }  // namespace lumi

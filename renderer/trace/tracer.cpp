@@ -25,7 +25,8 @@ namespace {
 /// Rays that closestHits() and occluded() trace at a time.
 constexpr int64_t kRayBlock = 1024;
 
-/// What is larger than this goes onto huge pages when it is new: rays are about 8% faster, and 100 MiB take about 50 ms.
+/// What is larger than this goes onto huge pages when it is new: rays are about 8% faster, and 100 MiB take about 50
+/// ms.
 constexpr size_t kManyBytes = size_t(8) << 20;
 constexpr double kGatherSeconds = 0.5;
 
@@ -70,7 +71,9 @@ void gatherTexels(std::span<const TextureView> textures) {
     std::unordered_set<const uint8_t*> gathered;
     for (const TextureView& view : textures)
         for (const TextureView::Level& level : std::span(view.levels).first(static_cast<size_t>(view.levelCount)))
-            if (gathered.insert(level.bytes).second) gatherOnHugePages(level.bytes, size_t(4) * static_cast<size_t>(level.width) * static_cast<size_t>(level.height));
+            if (gathered.insert(level.bytes).second)
+                gatherOnHugePages(level.bytes,
+                                  size_t(4) * static_cast<size_t>(level.width) * static_cast<size_t>(level.height));
 }
 
 std::shared_ptr<const PosedScene> emptyScene() {
@@ -155,7 +158,8 @@ bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_t
     if (extra.empty() && isGeometryOnly(signals.available())) path.maxDepth = 0;  // no light is asked for
     const Integrator integrator(impl_->scene, path, sampling.seed, observers);
 
-    static_assert(SignalsObserver::kTile * SignalsObserver::kTile <= PathBatch::kMost && SignalsObserver::kTile <= kMostInStartRow);
+    static_assert(SignalsObserver::kTile * SignalsObserver::kTile <= PathBatch::kMost &&
+                  SignalsObserver::kTile <= kMostInStartRow);
     const std::vector<int> tiles = mortonOrder(frame.tileColumns(), frame.tileRows());
     std::atomic<size_t> done{0};
     parallelFor(
@@ -206,11 +210,11 @@ bool Tracer::Impl::traceBatches(std::span<const PathStart> starts, std::span<con
             for (int64_t i = begin; i < end;) {
                 const auto size = static_cast<size_t>(std::min<int64_t>(end - i, PathBatch::kMost));
                 const auto first = static_cast<size_t>(i);
-                const bool whole = integrator.run(*batch, starts.subspan(first, size),
-                                                  firstPoints.empty() ? firstPoints : firstPoints.subspan(first, size),
-                                                  radiance.empty() ? radiance : radiance.subspan(first, size),
-                                                  firstPoints.empty(), counts, stop,
-                                                  firstHits.empty() ? firstHits : firstHits.subspan(first, size));
+                const bool whole =
+                    integrator.run(*batch, starts.subspan(first, size),
+                                   firstPoints.empty() ? firstPoints : firstPoints.subspan(first, size),
+                                   radiance.empty() ? radiance : radiance.subspan(first, size), firstPoints.empty(),
+                                   counts, stop, firstHits.empty() ? firstHits : firstHits.subspan(first, size));
                 if (!whole) break;
                 done += static_cast<int64_t>(size);
                 i += static_cast<int64_t>(size);
@@ -238,7 +242,8 @@ bool Tracer::continuePaths(std::span<const PathStart> starts, std::span<const Hi
 bool Tracer::shade(std::span<const SurfacePoint> points, std::span<const Vec3> wo, std::span<const RandomKey> keys,
                    const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
                    std::span<PathObserver* const> observers, std::stop_token stop, std::span<const RayCone> cones) {
-    assert(points.size() == wo.size() && points.size() == keys.size() && (cones.empty() || cones.size() == points.size()));
+    assert(points.size() == wo.size() && points.size() == keys.size() &&
+           (cones.empty() || cones.size() == points.size()));
     std::vector<PathStart> starts(points.size());
     parallelRanges(static_cast<int64_t>(starts.size()), 4096, [&](int64_t begin, int64_t end) {
         for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
@@ -255,7 +260,8 @@ bool Tracer::shade(std::span<const SurfacePoint> points, std::span<const Vec3> w
 
 namespace {
 
-void toBatchRays(std::span<const Ray> rays, std::vector<BatchRay>& out, size_t first, std::span<const uint32_t> ids = {}) {
+void toBatchRays(std::span<const Ray> rays, std::vector<BatchRay>& out, size_t first,
+                 std::span<const uint32_t> ids = {}) {
     out.resize(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) {
         const Ray& r = rays[i];
@@ -283,7 +289,8 @@ void Tracer::closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::st
                 const Vec3 position = batch[i].origin + batch[i].direction * raw[i].distance;
                 hits[first + i] = {surfacePoint(impl_->scene.tables, raw[i], position, batch[i].time), raw[i].distance};
             }
-            const auto flown = static_cast<uint64_t>(std::count_if(batch.begin(), batch.end(), [](const BatchRay& r) { return r.tmin <= r.tmax; }));
+            const auto flown = static_cast<uint64_t>(
+                std::count_if(batch.begin(), batch.end(), [](const BatchRay& r) { return r.tmin <= r.tmax; }));
             impl_->add(coherent ? TraceCounts{.cameraRays = flown} : TraceCounts{.bounceRays = flown});
         },
         stop);
@@ -342,9 +349,7 @@ TraceCounts Tracer::counts() const {
     return {impl_->cameraRays, impl_->bounceRays, impl_->shadowRays, impl_->nonFinite};
 }
 
-void Tracer::resetCounts() {
-    impl_->cameraRays = impl_->bounceRays = impl_->shadowRays = impl_->nonFinite = 0;
-}
+void Tracer::resetCounts() { impl_->cameraRays = impl_->bounceRays = impl_->shadowRays = impl_->nonFinite = 0; }
 
 uint32_t firstRayId(const RandomKey& key, uint32_t seed) { return pcgHash(pathHash(key, seed)); }
 

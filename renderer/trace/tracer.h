@@ -63,8 +63,8 @@ public:
 
     /// Makes `posed` the scene that is traced: builds, refits or keeps each part of the Embree scene and the lights by
     /// what changed against the last call. Throws Error(Resources) if it does not fit the memory limit, and
-    /// Error(Interrupted) once stopped: the scene before stays if nothing was done yet; else, as after any error, an empty
-    /// scene is bound.
+    /// Error(Interrupted) once stopped: the scene before stays if nothing was done yet; else, as after any error, an
+    /// empty scene is bound.
     void bind(std::shared_ptr<const PosedScene> posed, std::stop_token stop = {});
     const PosedScene& scene() const;
 
@@ -74,16 +74,18 @@ public:
                 std::span<PathObserver* const> extra = {});
 
     /// Traces whole paths from given rays. `radiance` (may be empty) receives one value a start. Observers see every
-    /// vertex; the first may be a FirstHitJudge (here alone). Starts are cut into batches of a fixed size in order; equal slots must be adjacent.
+    /// vertex; the first may be a FirstHitJudge (here alone). Starts are cut into batches of a fixed size in order;
+    /// equal slots must be adjacent.
     bool tracePaths(std::span<const PathStart> starts, const PathSettings& settings, uint32_t seed,
                     std::span<Vec3> radiance, std::span<PathObserver* const> observers, std::stop_token stop = {});
 
     /// Shades given surface points as seen along -wo[i] (unit, world, away from the surface), path continuing from
-    /// there: a path whose first vertex is given. Invalid points give 0. `cones` (may be empty: points without extent) are
-    /// the footprints on arrival; with those of a camera ray and its key the result is that of the camera's path.
+    /// there: a path whose first vertex is given. Invalid points give 0. `cones` (may be empty: points without extent)
+    /// are the footprints on arrival; with those of a camera ray and its key the result is that of the camera's path.
     bool shade(std::span<const SurfacePoint> points, std::span<const Vec3> wo, std::span<const RandomKey> keys,
                const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
-               std::span<PathObserver* const> observers, std::stop_token stop = {}, std::span<const RayCone> cones = {});
+               std::span<PathObserver* const> observers, std::stop_token stop = {},
+               std::span<const RayCone> cones = {});
 
     /// tracePaths() from where closestHits() found that the rays of `starts` end: hits[i] is that of starts[i].ray, an
     /// invalid one left the scene. The result is tracePaths()'s if closestHits() was given the ids firstRayId().
@@ -91,9 +93,9 @@ public:
                        uint32_t seed, std::span<Vec3> radiance, std::span<PathObserver* const> observers,
                        std::stop_token stop = {});
 
-    /// Nearest hits. `coherent`: neighbours among the rays start alike and go alike, as camera rays do; it is faster then,
-    /// and they count as camera rays. Rays with tmin > tmax meet nothing and are not counted. `ids` (may be empty: by place
-    /// in the call) draw which blended surfaces a ray stops at: the same id always draws the same.
+    /// Nearest hits. `coherent`: neighbours among the rays start alike and go alike, as camera rays do; it is faster
+    /// then, and they count as camera rays. Rays with tmin > tmax meet nothing and are not counted. `ids` (may be
+    /// empty: by place in the call) draw which blended surfaces a ray stops at: the same id always draws the same.
     void closestHits(std::span<const Ray> rays, std::span<Hit> hits, std::stop_token stop = {}, bool coherent = false,
                      std::span<const uint32_t> ids = {});
     /// blocked[i] = 1 if anything lies in (tmin, tmax). With `blockers` (may be empty) the nearest blocker is reported.

@@ -7,8 +7,8 @@
 namespace lumi {
 
 /// The Fibonacci lattice of `Count` points; the next smaller Fibonacci number is `Step`. Heights crowd at the far end,
-/// where reflected light grazes and integrands fall steeply; `weight` makes up for it. `HalfTurns` 1 leaves out the half
-/// that isotropic facets seen from the x-z plane mirror.
+/// where reflected light grazes and integrands fall steeply; `weight` makes up for it. `HalfTurns` 1 leaves out the
+/// half that isotropic facets seen from the x-z plane mirror.
 template <int Count, int Step, int HalfTurns = 2>
 struct FibonacciLattice {
     struct Point {
@@ -19,7 +19,8 @@ struct FibonacciLattice {
     FibonacciLattice() {
         for (int i = 0; i < Count; ++i) {
             const float t = 1 - (static_cast<float>(i) + 0.5f) / Count;
-            const float azimuth = HalfTurns * kPi * (static_cast<float>(i * Step % Count) + (HalfTurns == 1 ? 0.5f : 0.0f)) / Count;
+            const float azimuth =
+                HalfTurns * kPi * (static_cast<float>(i * Step % Count) + (HalfTurns == 1 ? 0.5f : 0.0f)) / Count;
             points[static_cast<size_t>(i)] = {1 - t * t, std::cos(azimuth), std::sin(azimuth), 2 * t / Count};
         }
     }

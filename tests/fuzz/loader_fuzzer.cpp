@@ -17,8 +17,8 @@ namespace {
 
 const std::string kKind = LUMI_FUZZ_KIND;
 
-/// What a session does with a file, down to a few rays; but for the sky that files without light get, which takes longer
-/// than all the rest.
+/// What a session does with a file, down to a few rays; but for the sky that files without light get, which takes
+/// longer than all the rest.
 void open(const std::filesystem::path& path) {
     MessageLog log;
     const std::string kind = path.extension();
@@ -32,7 +32,8 @@ void open(const std::filesystem::path& path) {
 void openWithMaterials(Bytes mtl) {
     fileOf(mtl, "fuzz.mtl");
     static const std::string obj =
-        "mtllib fuzz.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 3/3 2/2 1/1\n";
+        "mtllib fuzz.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 3/3 "
+        "2/2 1/1\n";
     open(fileOf({reinterpret_cast<const uint8_t*>(obj.data()), obj.size()}, "fuzz.obj"));
 }
 

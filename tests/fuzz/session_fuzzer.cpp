@@ -1,5 +1,5 @@
-// libFuzzer target of one kind of file that tells what to do with scenes: LUMI_FUZZ_KIND chooses a study, the state inside
-// an image, or a part of a reference.
+// libFuzzer target of one kind of file that tells what to do with scenes: LUMI_FUZZ_KIND chooses a study, the state
+// inside an image, or a part of a reference.
 #include "fuzz/fuzz_target.h"
 #include "reference/reference_file.h"
 #include "scene/load.h"

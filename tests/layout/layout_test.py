@@ -1,6 +1,8 @@
 """The house rules that a machine can check: where files stand, who includes whom, how long files are."""
 import pathlib
 import re
+import shutil
+import subprocess
 import sys
 import unittest
 
@@ -57,6 +59,18 @@ class Layout(unittest.TestCase):
             if lines > 400 and "table" not in path.name:
                 long.append(f"{path.relative_to(ROOT)} ({lines})")
         self.assertEqual(long, [])
+
+    def test_code_is_formatted(self):
+        """By the clang-format whose output .clang-format was written for: each version lays out a little differently."""
+        if not shutil.which("clang-format"):
+            self.skipTest("clang-format is not installed")
+        version = subprocess.run(["clang-format", "--version"], capture_output=True, text=True).stdout.strip()
+        if " version 14." not in version:
+            self.skipTest(f"the code is formatted by clang-format 14; found {version}")
+        files = [str(p) for p in code_files("renderer", "ui", "app", "tests")]
+        check = subprocess.run(["clang-format", "--dry-run", "--ferror-limit=1", *files], capture_output=True, text=True)
+        wrong = sorted({line.split(":")[0] for line in check.stderr.splitlines() if "clang-format-violations" in line})
+        self.assertEqual([str(pathlib.Path(p).relative_to(ROOT)) for p in wrong], [], "clang-format -i mends them")
 
     def test_sources_are_listed_in_a_build_file(self):
         """A source that no CMakeLists.txt names is never compiled, and its tests never run."""

@@ -76,12 +76,14 @@ TEST_P(Catalogue, ForgettingEqualsAFreshInstance) {
     const Extent2 extent{41, 29};
     ModuleHarness harness(extent);
     const auto used = make(extent), fresh = make(extent);
-    for (FrameNumber frame = 0; frame < 4; ++frame) harness.image(*used, frame, harness.trace(frame, 0.1f * static_cast<float>(frame)));
+    for (FrameNumber frame = 0; frame < 4; ++frame)
+        harness.image(*used, frame, harness.trace(frame, 0.1f * static_cast<float>(frame)));
     used->forget();
     for (FrameNumber frame = 7; frame < 10; ++frame) {
         const Signals signals = harness.trace(frame);
         const Changes changes{.cut = frame == 7};
-        const Image a = harness.image(*used, frame, signals, changes), b = harness.image(*fresh, frame, signals, changes);
+        const Image a = harness.image(*used, frame, signals, changes),
+                    b = harness.image(*fresh, frame, signals, changes);
         EXPECT_EQ(digestOf(a, *used), digestOf(b, *fresh)) << "frame " << frame;
     }
 }
@@ -109,7 +111,8 @@ TEST_P(Catalogue, TheSameFrameAgainReplacesIt) {
     const Extent2 extent{41, 29};
     ModuleHarness harness(extent);
     const auto replaced = make(extent), straight = make(extent);
-    const Signals first = harness.trace(0), wrong = harness.trace(5, 0.3f), second = harness.trace(1), third = harness.trace(2);
+    const Signals first = harness.trace(0), wrong = harness.trace(5, 0.3f), second = harness.trace(1),
+                  third = harness.trace(2);
     harness.image(*replaced, 0, first);
     harness.image(*replaced, 1, wrong, {.camera = true});
     harness.image(*replaced, 1, wrong);
@@ -145,7 +148,8 @@ TEST_P(Catalogue, AStaticViewConverges) {
         Signals signals = constantSignals(extent, 1, 0);
         for (size_t i = 0; i < signals[Signal::Noisy].size(); ++i) {
             const float value = unitFloat(hashCombine(static_cast<uint32_t>(i), static_cast<uint32_t>(frame)));
-            signals[Signal::Noisy].data()[i] = signals[Signal::DirectDiffuse].data()[i] = signals[Signal::Direct].data()[i] = value;
+            signals[Signal::Noisy].data()[i] = signals[Signal::DirectDiffuse].data()[i] =
+                signals[Signal::Direct].data()[i] = value;
             signals.noisySum().data()[i] = value;
         }
         const Image image = harness.image(*module, frame, signals);
@@ -182,13 +186,14 @@ TEST_P(Catalogue, SwitchesMayBeFlippedBetweenFramesWhileAPixelIsAskedAbout) {
         const auto module = make(extent);
         for (FrameNumber frame = 0; frame < 6; ++frame) {
             if (frame > 1) flip(*module, id);
-            EXPECT_EQ(countNonFinite(harness.image(*module, frame, harness.trace(frame))), 0) << id << ", frame " << frame;
+            EXPECT_EQ(countNonFinite(harness.image(*module, frame, harness.trace(frame))), 0)
+                << id << ", frame " << frame;
         }
     }
 }
 
-// Where a method says that no history reaches a frame a replay begins there: with any two switches flipped the frame is that
-// of a fresh instance.
+// Where a method says that no history reaches a frame a replay begins there: with any two switches flipped the frame is
+// that of a fresh instance.
 TEST_P(Catalogue, WhereNoHistoryIsKeptAFreshInstanceGivesTheFrame) {
     const Extent2 extent{19, 13};
     ModuleHarness harness(extent);

@@ -1,5 +1,5 @@
-// Input that breaks filters, on every module of the catalogue: numbers that are none, no light, nothing but sky, another
-// size in mid-sequence, parameters at their ends. And what must not be changed: light without noise.
+// Input that breaks filters, on every module of the catalogue: numbers that are none, no light, nothing but sky,
+// another size in mid-sequence, parameters at their ends. And what must not be changed: light without noise.
 #include <limits>
 
 #include "math/hash.h"
@@ -41,7 +41,8 @@ TEST_P(Degenerate, ADroppedPixelIsCountedAndShownAndHarmsNoOther) {
     const auto frameWith = [&](FrameNumber frame, float value) {
         Signals signals = harness.trace(frame);
         if (frame == 2)
-            for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::Indirect, Signal::Emission}) signals[signal].at(1, at.x, at.y) = value;
+            for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::Indirect, Signal::Emission})
+                signals[signal].at(1, at.x, at.y) = value;
         return signals;
     };
     for (const float bad : {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity}) {
@@ -54,7 +55,8 @@ TEST_P(Degenerate, ADroppedPixelIsCountedAndShownAndHarmsNoOther) {
             EXPECT_LE(countNonFinite(image), isOneOf({"none", "accumulate"}) ? 1 : 0) << "frame " << frame;
             // What is dropped counts as 0, but where it was filled in: no other pixel is other than if it had been.
             if (!isOneOf(kFilters)) {
-                EXPECT_EQ(countDifferent(image, harness.image(*clean, frame, frameWith(frame, 0)), at), 0) << "frame " << frame;
+                EXPECT_EQ(countDifferent(image, harness.image(*clean, frame, frameWith(frame, 0)), at), 0)
+                    << "frame " << frame;
             }
             if (!counts) continue;
             const Image& dropped = module->tap("dropped");
@@ -68,8 +70,8 @@ TEST_P(Degenerate, ADroppedPixelIsCountedAndShownAndHarmsNoOther) {
     }
 }
 
-// Under light that is the same everywhere a sample that is no number leaves no trace, neither then nor in later frames; with
-// history or, in the first frame, without.
+// Under light that is the same everywhere a sample that is no number leaves no trace, neither then nor in later frames;
+// with history or, in the first frame, without.
 TEST_P(Degenerate, ADroppedSampleIsNoDarkOne) {
     if (!isOneOf(kFilters)) GTEST_SKIP() << "fills nothing in";
     const Extent2 extent{31, 19};
@@ -79,7 +81,8 @@ TEST_P(Degenerate, ADroppedSampleIsNoDarkOne) {
         for (FrameNumber frame = 0; frame < 5; ++frame) {
             Signals signals = constantSignals(extent, 1, 0.625f);
             if (frame == at)
-                for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::Indirect}) signals[signal].at(1, 12, 7) = std::numeric_limits<float>::quiet_NaN();
+                for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::Indirect})
+                    signals[signal].at(1, 12, 7) = std::numeric_limits<float>::quiet_NaN();
             const Image image = harness.image(*module, frame, signals);
             for (size_t i = 0; i < image.size(); ++i) ASSERT_NEAR(image.data()[i], 0.625f, 2e-6f) << "frame " << frame;
         }
@@ -94,7 +97,8 @@ TEST_P(Degenerate, AHugeSampleLeavesNumbers) {
     for (FrameNumber frame = 0; frame < 6; ++frame) {
         Signals signals = harness.trace(frame);
         if (frame == 2)
-            for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::Indirect}) signals[signal].at(1, 12, 7) = 1e20f;
+            for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::Indirect})
+                signals[signal].at(1, 12, 7) = 1e20f;
         EXPECT_EQ(countNonFinite(harness.image(*module, frame, signals)), 0) << "frame " << frame;
         for (const Tap& tap : module->taps()) {
             const Image& image = module->tap(tap.name);
@@ -119,8 +123,8 @@ TEST_P(Degenerate, WithoutLightItIsBlack) {
 /// Nothing but sky, of one colour a column.
 Signals sky(Extent2 extent) {
     Signals signals = constantSignals(extent, 1, 0);
-    for (const Signal signal : {Signal::Normal, Signal::GeometricNormal, Signal::ObjectNormal, Signal::InverseDepth, Signal::Direct,
-                                Signal::DirectDiffuse})
+    for (const Signal signal : {Signal::Normal, Signal::GeometricNormal, Signal::ObjectNormal, Signal::InverseDepth,
+                                Signal::Direct, Signal::DirectDiffuse})
         signals[signal].fill(0);
     signals[Signal::Depth].fill(kInfinity);
     for (const Signal id : {Signal::ObjectId, Signal::MaterialId}) signals.ids(id).fill(0);
@@ -147,7 +151,8 @@ TEST_P(Degenerate, SkyPassesAround) {
     const Signals signals = sky(extent);
     for (FrameNumber frame = 0; frame < 4; ++frame) {
         const Image image = harness.image(*module, frame, signals);
-        for (int x = 0; x < extent.width; ++x) ASSERT_NEAR(image.at(1, x, 3), 0.1f * static_cast<float>(1 + x), 1e-5f) << "frame " << frame;
+        for (int x = 0; x < extent.width; ++x)
+            ASSERT_NEAR(image.at(1, x, 3), 0.1f * static_cast<float>(1 + x), 1e-5f) << "frame " << frame;
     }
 }
 
@@ -159,7 +164,8 @@ TEST_P(Degenerate, AnotherSizeInMidSequenceIsAFreshStart) {
     for (FrameNumber frame = 3; frame < 6; ++frame) {
         const Signals signals = small.trace(frame);
         const Changes changes{.cut = frame == 3};
-        const Image a = small.image(*resized, frame, signals, changes), b = small.image(*fresh, frame, signals, changes);
+        const Image a = small.image(*resized, frame, signals, changes),
+                    b = small.image(*fresh, frame, signals, changes);
         ASSERT_EQ(digestOf(a, *resized), digestOf(b, *fresh)) << "frame " << frame;
     }
 }
@@ -170,12 +176,14 @@ TEST_P(Degenerate, EveryParameterAtEitherEndGivesNumbers) {
     std::vector<std::shared_ptr<Signals>> frames;
     const auto shift = [](FrameNumber frame) { return 0.04f * static_cast<float>(frame); };
     for (FrameNumber frame = 0; frame < 4; ++frame)
-        frames.push_back(std::make_shared<Signals>(harness.trace(frame, shift(frame), frame > 0 ? shift(frame - 1) : 0)));
+        frames.push_back(
+            std::make_shared<Signals>(harness.trace(frame, shift(frame), frame > 0 ? shift(frame - 1) : 0)));
     const auto sample = GetParam()->make();
     for (const ParameterInfo& info : listParameters([&](ParameterVisitor& v) { sample->describe(v); })) {
         std::vector<ParameterValue> ends;
         if (info.type == ParameterType::Number) ends = {static_cast<float>(info.min), static_cast<float>(info.max)};
-        if (info.type == ParameterType::Integer) ends = {static_cast<int>(info.min), static_cast<int>(std::min(info.max, 1e6))};
+        if (info.type == ParameterType::Integer)
+            ends = {static_cast<int>(info.min), static_cast<int>(std::min(info.max, 1e6))};
         for (const ParameterValue& end : ends) {
             const auto module = make(extent);
             const auto describe = [&](ParameterVisitor& v) { module->describe(v); };
@@ -185,15 +193,17 @@ TEST_P(Degenerate, EveryParameterAtEitherEndGivesNumbers) {
             for (FrameNumber frame = 0; frame < 4; ++frame) {
                 Image image;
                 const Changes changes{.cut = frame == 0, .camera = frame > 0};
-                ASSERT_EQ(harness.run(*module, {frame, changes, shift(frame), false}, *frames[static_cast<size_t>(frame)], image), RunResult::Completed);
+                ASSERT_EQ(harness.run(*module, {frame, changes, shift(frame), false},
+                                      *frames[static_cast<size_t>(frame)], image),
+                          RunResult::Completed);
                 ASSERT_EQ(countNonFinite(image), 0) << info.id << " frame " << frame;
             }
         }
     }
 }
 
-// A static converged input passes through the filter: no noise, all history valid. Antialiasing is off: it clips still detail
-// that stands out of its neighbourhood.
+// A static converged input passes through the filter: no noise, all history valid. Antialiasing is off: it clips still
+// detail that stands out of its neighbourhood.
 TEST_P(Degenerate, LightWithoutNoisePasses) {
     if (isOneOf({"eaw", "sbf", "taa"})) GTEST_SKIP() << "blurs whatever it is given";
     const Extent2 extent{48, 32};
@@ -203,17 +213,22 @@ TEST_P(Degenerate, LightWithoutNoisePasses) {
     const auto describe = [&](ParameterVisitor& v) { module->describe(v); };
     for (const ParameterInfo& info : listParameters(describe)) {
         if (info.id == "taa") setParameter(describe, "taa", false);
-        if (info.id == "gradient-strength") setParameter(describe, info.id, 0.0f);  // the light is not that of the scene
+        if (info.id == "gradient-strength")
+            setParameter(describe, info.id, 0.0f);  // the light is not that of the scene
     }
     Signals signals = constantSignals(extent, 1, 0);
     for (int y = 0; y < extent.height; ++y)
         for (int x = 0; x < extent.width; ++x)
             for (int c = 0; c < 3; ++c) {
-                const float value = 0.5f + unitFloat(hashCombine(static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(c)));
-                for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::DirectDiffuse}) signals[signal].at(c, x, y) = value;
+                const float value = 0.5f + unitFloat(hashCombine(static_cast<uint32_t>(x), static_cast<uint32_t>(y),
+                                                                 static_cast<uint32_t>(c)));
+                for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::DirectDiffuse})
+                    signals[signal].at(c, x, y) = value;
                 signals.noisySum().at(c, x, y) = value;
             }
-    const auto luminanceOf = [](const Image& image, int x, int y) { return luminance(Vec3(image.at(0, x, y), image.at(1, x, y), image.at(2, x, y))); };
+    const auto luminanceOf = [](const Image& image, int x, int y) {
+        return luminance(Vec3(image.at(0, x, y), image.at(1, x, y), image.at(2, x, y)));
+    };
     Image image;
     for (FrameNumber frame = 0; frame < 120; ++frame) image = harness.image(*module, frame, signals);
     for (int y = 0; y < extent.height; ++y)

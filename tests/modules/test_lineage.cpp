@@ -26,7 +26,8 @@ Asked ask(const char* id, Pixel pixel, bool dims = false) {
         if (dims && frame == 3) harness.dimLights(true);
         harness.inspected = frame == 3 ? std::optional(pixel) : std::nullopt;
         EXPECT_EQ(harness.run(*module, {frame, {.cut = frame == 0, .camera = frame > 0}, shift, false},
-                              harness.trace(frame, shift, frame > 0 ? shift - 0.02f : 0), image), RunResult::Completed);
+                              harness.trace(frame, shift, frame > 0 ? shift - 0.02f : 0), image),
+                  RunResult::Completed);
         asked.before = asked.now;
         for (const Tap& tap : module->taps()) asked.now[tap.name] = module->tap(tap.name);
     }
@@ -53,8 +54,10 @@ TEST(LineageOf, SvgfGivesEachLevel) {
         for (const std::string component : {"direct", "indirect"})
             for (int level = 1; level <= 5; ++level) {
                 double parts = 0;
-                const std::string before = component + "Level" + std::to_string(level - 1), after = component + "Level" + std::to_string(level);
-                const double sum = sumOver(asked.lineage, component + ", level " + std::to_string(level), asked.now.at(before), parts);
+                const std::string before = component + "Level" + std::to_string(level - 1),
+                                  after = component + "Level" + std::to_string(level);
+                const double sum =
+                    sumOver(asked.lineage, component + ", level " + std::to_string(level), asked.now.at(before), parts);
                 EXPECT_NEAR(parts, 1, 1e-5);
                 EXPECT_NEAR(sum, asked.now.at(after).at(1, pixel.x, pixel.y), 1e-3) << after;
             }
@@ -102,7 +105,8 @@ TEST(LineageOf, EawGivesEachLevel) {
     const Asked asked = ask("eaw", pixel);
     for (int level = 1; level <= 5; ++level) {
         double parts = 0;
-        const double sum = sumOver(asked.lineage, "level " + std::to_string(level), asked.now.at("level" + std::to_string(level - 1)), parts);
+        const double sum = sumOver(asked.lineage, "level " + std::to_string(level),
+                                   asked.now.at("level" + std::to_string(level - 1)), parts);
         EXPECT_NEAR(parts, 1, 1e-5);
         EXPECT_NEAR(sum, asked.now.at("level" + std::to_string(level)).at(1, pixel.x, pixel.y), 1e-3);
     }

@@ -49,7 +49,8 @@ TEST(Martin2002, KeepsOneSampleAPixel) {
 /// Black balls before a sky: what a sample shows never changes.
 TinyScene silhouettes() {
     TinyScene tiny;
-    for (int i = 0; i < 5; ++i) tiny.add(sphereMesh(0.4f, 24, 12), lambert(0), translation(Vec3(static_cast<float>(i) - 2, 0.4f, 0)));
+    for (int i = 0; i < 5; ++i)
+        tiny.add(sphereMesh(0.4f, 24, 12), lambert(0), translation(Vec3(static_cast<float>(i) - 2, 0.4f, 0)));
     tiny.scene.environment.constant = Vec3(0.2f);
     return tiny;
 }
@@ -65,8 +66,10 @@ TEST(Martin2002, AveragesAlongSamplesOrOnTheScreen) {
         set(module, "average", std::string(onScene ? "scene" : "screen"));
         int blurred = 0;
         for (int frame = 0; frame < 4; ++frame) {
-            const Image image = rig.run(module, frame, posed, view(0.08f * static_cast<float>(frame)), {.camera = true});
-            for (size_t i = 0; i < image.size(); ++i) blurred += std::fabs(image.data()[i] - module.tap("unfiltered").data()[i]) > 1e-6f;
+            const Image image =
+                rig.run(module, frame, posed, view(0.08f * static_cast<float>(frame)), {.camera = true});
+            for (size_t i = 0; i < image.size(); ++i)
+                blurred += std::fabs(image.data()[i] - module.tap("unfiltered").data()[i]) > 1e-6f;
         }
         if (onScene) EXPECT_EQ(blurred, 0);
         else EXPECT_GT(blurred, 100);
@@ -82,7 +85,8 @@ TEST(Martin2002, ReconstructsAsSupersamplingDoes) {
     SupersamplingModule supersampling;
     module.resize(extent), supersampling.resize(extent);
     set(module, "filter", std::string("gaussian"));
-    const Image image = rig.run(module, 0, posed, view(), {}), expected = other.run(supersampling, 0, posed, view(), {});
+    const Image image = rig.run(module, 0, posed, view(), {}),
+                expected = other.run(supersampling, 0, posed, view(), {});
     for (size_t i = 0; i < image.size(); ++i) ASSERT_NEAR(image.data()[i], expected.data()[i], 1e-6f);
 }
 

@@ -1,4 +1,5 @@
-// What modules promise that place their own rays, where the catalogue's suite, which makes up signals, does not reach them.
+// What modules promise that place their own rays, where the catalogue's suite, which makes up signals, does not reach
+// them.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -16,7 +17,9 @@ class OwnRays : public testing::TestWithParam<const char*> {
 protected:
     static constexpr Extent2 kExtent{70, 45};
     /// Moving, still, shrunk to nothing, gone, back again.
-    static std::vector<Moment> sequence() { return {{0, 1}, {0.05f, 1}, {0.12f, 1}, {0.12f, 1}, {0.12f, 0}, {0.2f, 0}, {0.2f, -1}, {0.2f, 1}, {0.25f, 1}}; }
+    static std::vector<Moment> sequence() {
+        return {{0, 1}, {0.05f, 1}, {0.12f, 1}, {0.12f, 1}, {0.12f, 0}, {0.2f, 0}, {0.2f, -1}, {0.2f, 1}, {0.25f, 1}};
+    }
     static std::unique_ptr<Module> make() {
         auto module = findModule(GetParam()).make();
         module->resize(kExtent);
@@ -66,7 +69,9 @@ TEST_P(OwnRays, ARunStoppedAnywhereChangesNothing) {
                 std::this_thread::sleep_for(std::chrono::microseconds(microseconds));
                 source.request_stop();
             });
-            if (player.run(*stopped, frame, {sequence()[i].shift + 0.3f, -1}, before, source.get_token()) == RunResult::Stopped) ++stops;
+            if (player.run(*stopped, frame, {sequence()[i].shift + 0.3f, -1}, before, source.get_token()) ==
+                RunResult::Stopped)
+                ++stops;
         }
         ASSERT_EQ(player.run(*stopped, frame, sequence()[i], before), RunResult::Completed);
         EXPECT_EQ(player.digest(*stopped), expected) << "frame " << i;
@@ -88,7 +93,8 @@ TEST_P(OwnRays, TheSameFrameAgainForgetsTheFirst) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, OwnRays, testing::Values("stable", "supersampling", "martin2002"), [](const auto& suite) { return std::string(suite.param); });
+INSTANTIATE_TEST_SUITE_P(All, OwnRays, testing::Values("stable", "supersampling", "martin2002"),
+                         [](const auto& suite) { return std::string(suite.param); });
 
 /// Lets every path go on from what its ray has met, but those of one slot in three.
 class LenientJudge : public FirstHitJudge {
@@ -130,8 +136,12 @@ TEST(FirstHitJudge, ChangesOnlyWhatItDecides) {
 class OneHitJudge : public FirstHitJudge {
 public:
     explicit OneHitJudge(const Hit& hit) : hit_(hit) {}
-    void nameRays(std::span<const PathStart>, std::span<uint32_t> ids) const override { std::fill(ids.begin(), ids.end(), 1u); }
-    void judge(std::span<const PathStart>, std::span<Hit> hits, std::span<uint8_t>) override { std::fill(hits.begin(), hits.end(), hit_); }
+    void nameRays(std::span<const PathStart>, std::span<uint32_t> ids) const override {
+        std::fill(ids.begin(), ids.end(), 1u);
+    }
+    void judge(std::span<const PathStart>, std::span<Hit> hits, std::span<uint8_t>) override {
+        std::fill(hits.begin(), hits.end(), hit_);
+    }
 
 private:
     Hit hit_;

@@ -27,7 +27,8 @@ TEST(Gradients, AreZeroWhileNothingChanges) {
             // Some land outside: their pixel's centre moves with the jitter.
             EXPECT_GT(meanOf(module->tap("gradientSample")), 0.6) << spp;
             for (const char* tap : {"directGradient", "indirectGradient", "directLoss", "indirectLoss"})
-                for (int64_t i = 0; i < kExtent.area(); ++i) ASSERT_NEAR(module->tap(tap).data()[i], 0, 1e-5) << tap << ' ' << spp;
+                for (int64_t i = 0; i < kExtent.area(); ++i)
+                    ASSERT_NEAR(module->tap(tap).data()[i], 0, 1e-5) << tap << ' ' << spp;
         }
     }
 }
@@ -65,7 +66,8 @@ TEST(Gradients, TellHowMuchTheLightChanged) {
     EXPECT_NEAR(meanOf(adaptive->tap("directLevel5")) / before, 1 - 0.7 * 2 / 3, 0.05);
 }
 
-// A light at 3 m, a sheet at 1 m over a floor: d1/d2 - 1 = 3/2 - 1 along every ray, and a square's deviation is L/sqrt(12).
+// A light at 3 m, a sheet at 1 m over a floor: d1/d2 - 1 = 3/2 - 1 along every ray, and a square's deviation is
+// L/sqrt(12).
 TEST(Occlusion, IsTheRatioOfDistances) {
     TinyScene tiny;
     tiny.add(floorMesh(20), lambert(0.8f));
@@ -80,14 +82,16 @@ TEST(Occlusion, IsTheRatioOfDistances) {
     const auto posed = tiny.pose();
     Tracer tracer;
     tracer.bind(posed);
-    FrameSampling sampling = frameOf(lookFrom({3.4f, 2.2f, 2.6f}, {0, 0, 0}), {96, 72}, 1, plainPaths(1), SignalSet::all());
+    FrameSampling sampling =
+        frameOf(lookFrom({3.4f, 2.2f, 2.6f}, {0, 0, 0}), {96, 72}, 1, plainPaths(1), SignalSet::all());
     sampling.jitter = Jitter::None;
     Signals signals;
     ASSERT_TRUE(tracer.sample(sampling, signals));
     const TapSet none;
     StageTimer timer;
     Image measured, gathered;
-    const FrameContext context{0, signals, *posed, sampling.camera, sampling.camera, {}, none, tracer, sampling, timer, {}};
+    const FrameContext context{0,        signals, *posed, sampling.camera, sampling.camera, {}, none, tracer,
+                               sampling, timer,   {}};
     ASSERT_TRUE(measureOcclusion(context, measured));
     int blocked = 0, lit = 0;
     for (int y = 0; y < 72; ++y)

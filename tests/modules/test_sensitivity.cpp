@@ -17,10 +17,12 @@ std::vector<ParameterValue> choicesOf(const ParameterInfo& info) {
         case ParameterType::Toggle: return {true, false};
         case ParameterType::Choice: values.assign(info.options.begin(), info.options.end()); return values;
         case ParameterType::Number:
-            for (const double t : {0.0, 0.25, 0.5, 1.0}) values.emplace_back(static_cast<float>(info.min + t * (info.max - info.min)));
+            for (const double t : {0.0, 0.25, 0.5, 1.0})
+                values.emplace_back(static_cast<float>(info.min + t * (info.max - info.min)));
             return values;
         case ParameterType::Integer:
-            for (const double t : {0.0, 0.001, 0.5, 1.0}) values.emplace_back(static_cast<int>(info.min + t * (info.max - info.min)));
+            for (const double t : {0.0, 0.001, 0.5, 1.0})
+                values.emplace_back(static_cast<int>(info.min + t * (info.max - info.min)));
             return values;
         case ParameterType::Colour: return {Vec3(0), Vec3(static_cast<float>(info.max))};
         case ParameterType::Vector: return {Vec3(1), Vec3(0, 2, 0)};
@@ -59,8 +61,8 @@ void setNumbers(Module& module, Others others) {
     }
 }
 
-/// Frames with a still camera, two moves and a still one again, lights that grow dim on the way, and 2 samples a pixel so
-/// that variances are there.
+/// Frames with a still camera, two moves and a still one again, lights that grow dim on the way, and 2 samples a pixel
+/// so that variances are there.
 class Sensitivity : public testing::TestWithParam<const ModuleEntry*> {
 protected:
     static void SetUpTestSuite() {
@@ -85,7 +87,9 @@ protected:
         std::string digests;
         for (FrameNumber frame = 0; frame < kFrames; ++frame) {
             Image out;
-            const Changes changes{.cut = frame == 0, .camera = shift(frame) != shift(frame - 1), .lights = isDim(frame) != isDim(frame - 1)};
+            const Changes changes{.cut = frame == 0,
+                                  .camera = shift(frame) != shift(frame - 1),
+                                  .lights = isDim(frame) != isDim(frame - 1)};
             harness_->dimLights(isDim(frame));
             const bool replaced = disturbed && frame == kFrames - 2;
             EXPECT_EQ(harness_->run(module, {frame, changes, shift(frame), false, shift(frame - 1)},

@@ -1,4 +1,5 @@
-// Stable ray tracing over frames: density, sticking to what deforms, convergence, and what vanishes, shrinks or is not there.
+// Stable ray tracing over frames: density, sticking to what deforms, convergence, and what vanishes, shrinks or is not
+// there.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -54,7 +55,8 @@ TEST(Stable, KeepsItsDensityWhileTheCameraMoves) {
                 ASSERT_EQ(count, static_cast<uint32_t>(std::popcount(subpixel::occupied(samples.words[p]))));
                 ASSERT_LE(count, 16u);
                 for (uint32_t i = samples.first[p]; i < samples.first[p + 1]; ++i) {
-                    ASSERT_EQ(static_cast<size_t>(samples.places[i].y) * 120 + static_cast<size_t>(samples.places[i].x), p);
+                    ASSERT_EQ(static_cast<size_t>(samples.places[i].y) * 120 + static_cast<size_t>(samples.places[i].x),
+                              p);
                     if (!samples.locations[i].isNew()) {
                         ASSERT_EQ(samples.inWorld[i], placeInWorld(rig.tracer, samples.locations[i]));
                     }
@@ -101,13 +103,15 @@ TEST(Stable, AStillViewConvergesLikeTheMeanOfItsSamples) {
         if (frame == 64) at64 = at;
     }
     EXPECT_EQ(still.module.samples().words, words);
-    EXPECT_GT(still.module.convergence().samples, static_cast<uint64_t>(kFrames - 8));  // since the last sample was added
+    EXPECT_GT(still.module.convergence().samples,
+              static_cast<uint64_t>(kFrames - 8));               // since the last sample was added
     const double ratio = squares(at16, at) / squares(at64, at);  // 4, less what `at` itself errs
     EXPECT_GT(ratio, 3);
     EXPECT_LT(ratio, 5.5);
 }
 
-// Switched off and on in a still view, the mean begins with the two latest frames, and light of before a change is not in it.
+// Switched off and on in a still view, the mean begins with the two latest frames, and light of before a change is not
+// in it.
 TEST(Stable, ConvergenceCanBeSwitched) {
     StillView still({24, 16}, 2);
     for (FrameNumber frame = 0; frame < 40; ++frame) still.run(frame);
@@ -134,7 +138,7 @@ TEST(Stable, ConvergenceCanBeSwitched) {
 TEST(Stable, TheErrorOfAStillViewFallsLikeOneOverN) {
     StillView still({48, 36}, 3);
     constexpr FrameNumber kAll = 4096, kFirst = 8, kLast = 256;
-    std::map<FrameNumber, Image> means;  // by frames
+    std::map<FrameNumber, Image> means;    // by frames
     std::map<FrameNumber, double> shares;  // mean of 1/n over the samples: some were there a few frames before others
     for (FrameNumber frame = 1; frame <= kAll; ++frame) {
         const Image at = still.run(frame - 1);
@@ -146,12 +150,14 @@ TEST(Stable, TheErrorOfAStillViewFallsLikeOneOverN) {
     double sumX = 0, sumY = 0, sumXX = 0, sumXY = 0, count = 0;
     for (FrameNumber n = kFirst; n <= kLast; n *= 2) {
         double squares = 0;
-        for (size_t i = 0; i < means[n].size(); ++i) squares += sqr(static_cast<double>(means[n].data()[i]) - means[kAll].data()[i]);
+        for (size_t i = 0; i < means[n].size(); ++i)
+            squares += sqr(static_cast<double>(means[n].data()[i]) - means[kAll].data()[i]);
         const double samples = static_cast<double>(still.module.samples().size()), paths = samples / shares[n];
         const double error = squares / static_cast<double>(means[n].size()) / (1 - shares[kAll] / shares[n]);
         const double x = std::log(paths), y = std::log(error);
         sumX += x, sumY += y, sumXX += x * x, sumXY += x * y, ++count;
-        std::printf("%4d frames, %.1f paths: mean squared error %.4g, times paths %.4g\n", static_cast<int>(n), paths, error, error * paths);
+        std::printf("%4d frames, %.1f paths: mean squared error %.4g, times paths %.4g\n", static_cast<int>(n), paths,
+                    error, error * paths);
     }
     const double slope = (count * sumXY - sumX * sumY) / (count * sumXX - sumX * sumX);
     std::printf("slope over %d to %d frames: %.3f\n", static_cast<int>(kFirst), static_cast<int>(kLast), slope);
@@ -174,7 +180,8 @@ TEST(Stable, SamplesStayOnWhatDeforms) {
     const SampleSet& now = module.samples();
     const CameraPose pose = poseCamera(camera, extent);
     std::set<std::array<uint32_t, 4>> known;
-    for (const SampleLocation& l : old.locations) known.insert({l.instance, l.primitive, std::bit_cast<uint32_t>(l.u), std::bit_cast<uint32_t>(l.v)});
+    for (const SampleLocation& l : old.locations)
+        known.insert({l.instance, l.primitive, std::bit_cast<uint32_t>(l.u), std::bit_cast<uint32_t>(l.v)});
     int deforming = 0, moved = 0;
     for (size_t i = 0; i < now.size(); ++i) {
         const SampleLocation& l = now.locations[i];
@@ -186,7 +193,8 @@ TEST(Stable, SamplesStayOnWhatDeforms) {
         const auto place = [&](const PosedScene& posed) {
             const UVec3 t = mesh.triangles[l.primitive];
             const auto& p = posed.instances[l.instance].deformed->positions;
-            return Vec2(pose.project(transformPoint(posed.instances[l.instance].worldFromObject, p[t.x] * (1 - l.u - l.v) + p[t.y] * l.u + p[t.z] * l.v)));
+            return Vec2(pose.project(transformPoint(posed.instances[l.instance].worldFromObject,
+                                                    p[t.x] * (1 - l.u - l.v) + p[t.y] * l.u + p[t.z] * l.v)));
         };
         EXPECT_LT(glm::distance(now.places[i], place(*after)), 0.01f);
         EXPECT_EQ(now.inWorld[i], placeInWorld(rig.tracer, l));
@@ -220,7 +228,8 @@ TEST(Stable, WhatVanishesOrShrinksToNothingLeavesNoSample) {
     rig.run(module, 4, balls().pose(), view(), {.objects = true});
     rig.run(module, 5, balls().pose(), view(), {.objects = true});
     int onBalls = 0;
-    for (const SampleLocation& l : module.samples().locations) onBalls += !l.isNew() && !l.isSky() && l.instance >= 1 && l.instance <= 5;
+    for (const SampleLocation& l : module.samples().locations)
+        onBalls += !l.isNew() && !l.isSky() && l.instance >= 1 && l.instance <= 5;
     EXPECT_GT(onBalls, 50);  // what appears in front occludes all samples of its pixels, and takes one of each
 }
 
@@ -238,12 +247,14 @@ TEST(Stable, HiddenSamplesForgetLightThatIsNoMore) {
             for (size_t p = 0; p < samples.words.size(); ++p) {
                 uint32_t i = samples.first[p];
                 for (uint32_t bits = subpixel::occupied(samples.words[p]); bits; bits &= bits - 1, ++i)
-                    count += !(subpixel::visible(samples.words[p]) & bits & (~bits + 1)) && samples.notes[i].indirectCount > 0;
+                    count += !(subpixel::visible(samples.words[p]) & bits & (~bits + 1)) &&
+                             samples.notes[i].indirectCount > 0;
             }
             return count;
         };
         FrameNumber frame = 0;
-        for (; frame < 6; ++frame) rig.run(module, frame, posed, view(0.05f * static_cast<float>(frame)), {.camera = true});
+        for (; frame < 6; ++frame)
+            rig.run(module, frame, posed, view(0.05f * static_cast<float>(frame)), {.camera = true});
         EXPECT_GT(hiddenWithLight(), 5);
         rig.run(module, frame, posed, view(0.05f * static_cast<float>(frame)), edit);
         EXPECT_EQ(hiddenWithLight(), 0);
@@ -260,7 +271,8 @@ TEST(Stable, SkyHasSamplesThatTurnWithTheCamera) {
     const auto posed = nothing.pose();
     Image image;
     for (FrameNumber frame = 0; frame < 4; ++frame)
-        image = rig.run(module, frame, posed, lookFrom(Vec3(0), Vec3(0.01f * static_cast<float>(frame), 0, -1)), {.camera = true});
+        image = rig.run(module, frame, posed, lookFrom(Vec3(0), Vec3(0.01f * static_cast<float>(frame), 0, -1)),
+                        {.camera = true});
     int old = 0;
     for (const SampleNote& note : module.samples().notes) old += note.age == 3;
     EXPECT_GT(old, 1700);
@@ -275,7 +287,8 @@ TEST(Stable, ATeleportStartsAnew) {
     const auto posed = balls().pose();
     rig.run(module, 0, posed, view(), {});
     rig.run(module, 1, posed, view(0.1f), {.camera = true});
-    const Image a = rig.run(module, 2, posed, view(2), {.cut = true}), b = other.run(fresh, 2, posed, view(2), {.cut = true});
+    const Image a = rig.run(module, 2, posed, view(2), {.cut = true}),
+                b = other.run(fresh, 2, posed, view(2), {.cut = true});
     EXPECT_EQ(a, b);
 }
 
@@ -306,7 +319,8 @@ TEST(Stable, BatchesMakeNoDifferenceButInIdleLanes) {
     const auto posed = balls().pose();
     for (FrameNumber frame = 0; frame < 6; ++frame) {
         const Camera camera = view(0.05f * static_cast<float>(frame));
-        ASSERT_EQ(a.run(dense, frame, posed, camera, {.camera = true}), b.run(perPixel, frame, posed, camera, {.camera = true}));
+        ASSERT_EQ(a.run(dense, frame, posed, camera, {.camera = true}),
+                  b.run(perPixel, frame, posed, camera, {.camera = true}));
         EXPECT_EQ(dense.verification().rays, dense.verification().lanes);
         EXPECT_EQ(dense.verification().rays, perPixel.verification().rays);
     }
@@ -334,7 +348,8 @@ TEST(Supersampling, IsTheMeanOfItsRays) {
                     columns.insert(static_cast<int>(within.x * static_cast<float>(spp)));
                     rows.insert(static_cast<int>(within.y * static_cast<float>(spp)));
                     starts.push_back(cameraStart(poseCamera(camera, extent), Vec2(x, y) + within, Vec2(0.5f), 0));
-                    starts.back().key = {static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(2 * spp + s)};
+                    starts.back().key = {static_cast<uint32_t>(x), static_cast<uint32_t>(y),
+                                         static_cast<uint32_t>(2 * spp + s)};
                     starts.back().slot = static_cast<uint32_t>(s);
                 }
                 EXPECT_EQ(columns.size() + rows.size(), static_cast<size_t>(2 * spp));  // rooks

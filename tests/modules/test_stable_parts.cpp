@@ -33,15 +33,19 @@ std::vector<uint32_t> randomWords(Extent2 extent, uint32_t seed) {
 // unoccluded one; nothing else is written.
 TEST(StableAlgorithm1, KeepsTheTruthTable) {
     constexpr int kAt = 6;
-    const uint32_t other = bit(3) | bit(9) | bit(9 + kCount), visibleBit = bit(kAt), occludedBits = bit(kAt) | bit(kAt + kCount);
+    const uint32_t other = bit(3) | bit(9) | bit(9 + kCount), visibleBit = bit(kAt),
+                   occludedBits = bit(kAt) | bit(kAt + kCount);
     struct Row {
         uint32_t before;
         bool isOccluded, stored;
         uint32_t after;
     };
-    const Row rows[] = {{0, false, true, visibleBit},           {0, true, true, occludedBits},
-                        {visibleBit, false, false, visibleBit}, {visibleBit, true, false, visibleBit},
-                        {occludedBits, false, true, visibleBit}, {occludedBits, true, false, occludedBits}};
+    const Row rows[] = {{0, false, true, visibleBit},
+                        {0, true, true, occludedBits},
+                        {visibleBit, false, false, visibleBit},
+                        {visibleBit, true, false, visibleBit},
+                        {occludedBits, false, true, visibleBit},
+                        {occludedBits, true, false, occludedBits}};
     for (const Row& row : rows) {
         uint32_t word = row.before | other;
         EXPECT_EQ(store(word, kAt, row.isOccluded), row.stored) << std::hex << row.before << ' ' << row.isOccluded;
@@ -51,16 +55,16 @@ TEST(StableAlgorithm1, KeepsTheTruthTable) {
 
 TEST(StableAnalysis, Equation1) {
     const DensitySettings one{1, 1, 0.5f}, four{4, 0.5f, 0.5f}, coarse{0.5f, 1, 0.5f};
-    EXPECT_EQ(sampleChange(0, one), 1);        // where the difference equals the tolerance it acts
+    EXPECT_EQ(sampleChange(0, one), 1);  // where the difference equals the tolerance it acts
     EXPECT_EQ(sampleChange(0.25f, one), 0);
     EXPECT_EQ(sampleChange(1.75f, one), 0);
     EXPECT_EQ(sampleChange(2, one), -1);
-    EXPECT_EQ(sampleChange(2.25f, one), -2);   // rounded away from zero
+    EXPECT_EQ(sampleChange(2.25f, one), -2);  // rounded away from zero
     EXPECT_EQ(sampleChange(0, four), 4);
     EXPECT_EQ(sampleChange(3.5f, four), 1);
     EXPECT_EQ(sampleChange(3.75f, four), 0);
     EXPECT_EQ(sampleChange(8, four), -4);
-    EXPECT_EQ(sampleChange(0, coarse), 1);     // the tolerance is at most the target
+    EXPECT_EQ(sampleChange(0, coarse), 1);  // the tolerance is at most the target
 }
 
 TEST(StableAnalysis, DensityOfRowsIsThatOfTheWindow) {
@@ -72,8 +76,10 @@ TEST(StableAnalysis, DensityOfRowsIsThatOfTheWindow) {
         for (int y = 0; y < extent.height; ++y)
             for (int x = 0; x < extent.width; ++x) {
                 const size_t p = static_cast<size_t>(y * extent.width + x);
-                ASSERT_EQ(density[p], localDensity(words, extent, x, y)) << extent.width << 'x' << extent.height << ' ' << x << ' ' << y;
-                const PixelChange expected = changePixel(words[p], sampleChange(density[p], {3, 0.5f, 0}), pixelRandom(static_cast<int64_t>(p), 1));
+                ASSERT_EQ(density[p], localDensity(words, extent, x, y))
+                    << extent.width << 'x' << extent.height << ' ' << x << ' ' << y;
+                const PixelChange expected = changePixel(words[p], sampleChange(density[p], {3, 0.5f, 0}),
+                                                         pixelRandom(static_cast<int64_t>(p), 1));
                 EXPECT_EQ(changes[p].added, expected.added);
                 EXPECT_EQ(changes[p].removed, expected.removed);
             }
@@ -115,7 +121,8 @@ TEST(StableAnalysis, TiesAreDrawnEvenly) {
     int counts[kStrata] = {};
     constexpr int kDraws = 4000;
     for (uint32_t random = 0; random < kDraws; ++random)
-        for (int s = 0; s < kStrata; ++s) counts[s] += (changePixel(0, 1, pixelRandom(random, 3)).added & kStratum[s]) != 0;
+        for (int s = 0; s < kStrata; ++s)
+            counts[s] += (changePixel(0, 1, pixelRandom(random, 3)).added & kStratum[s]) != 0;
     for (const int count : counts) EXPECT_NEAR(count, kDraws / 4, 5 * std::sqrt(kDraws * 3 / 16.0));
 }
 
@@ -143,8 +150,8 @@ TEST(StableAnalysis, NewSamplesLieInTheirSubpixelAtTheStratumsMiddle) {
         }
 }
 
-// Many at a time as one by one, on every instruction set: in front of the camera and behind it, off the screen, in the sky,
-// and those that have no place at all.
+// Many at a time as one by one, on every instruction set: in front of the camera and behind it, off the screen, in the
+// sky, and those that have no place at all.
 TEST(StableReprojection, KernelsFindWhatIsFoundOneByOne) {
     constexpr uint32_t kCount = 1000;
     std::vector<SampleLocation> locations(kCount);
@@ -237,18 +244,23 @@ TEST(ScatteredFilter, IsTheTruncatedGaussian) {
             for (int x = 0; x < extent.width; ++x) {
                 double weight = 0, toned = 0, sum[3] = {};
                 for (size_t i = 0; i < places.size(); ++i) {
-                    if (hidden[i] || i == 7 || std::abs(int(places[i].x) - x) > 1 || std::abs(int(places[i].y) - y) > 1) continue;
-                    const double dx = places[i].x - x - 0.5, dy = places[i].y - y - 0.5, w = std::exp(-(dx * dx + dy * dy) / (2 * 0.25));
+                    if (hidden[i] || i == 7 || std::abs(int(places[i].x) - x) > 1 || std::abs(int(places[i].y) - y) > 1)
+                        continue;
+                    const double dx = places[i].x - x - 0.5, dy = places[i].y - y - 0.5,
+                                 w = std::exp(-(dx * dx + dy * dy) / (2 * 0.25));
                     const double tone = toneMapped ? 1 + luminance(colours[i]) : 1;
                     weight += w, toned += w / tone;
-                    EXPECT_NEAR(scatteredWeight(settings, Vec2(static_cast<float>(dx), static_cast<float>(dy)), colours[i]), w / tone, 1e-5);
+                    EXPECT_NEAR(
+                        scatteredWeight(settings, Vec2(static_cast<float>(dx), static_cast<float>(dy)), colours[i]),
+                        w / tone, 1e-5);
                     for (int c = 0; c < 3; ++c) sum[c] += w * colours[i][c] / tone;
                 }
                 EXPECT_NEAR(weights.at(0, x, y), toned, 1e-4);
                 if (weight == 0) continue;
                 Vec3 mean(sum[0] / weight, sum[1] / weight, sum[2] / weight);
                 if (toneMapped) mean /= 1 - luminance(mean);
-                for (int c = 0; c < 3; ++c) EXPECT_NEAR(out.at(c, x, y), mean[c], 1e-4 * (1 + mean[c])) << x << ' ' << y;
+                for (int c = 0; c < 3; ++c)
+                    EXPECT_NEAR(out.at(c, x, y), mean[c], 1e-4 * (1 + mean[c])) << x << ' ' << y;
             }
     }
 }
@@ -340,7 +352,8 @@ TEST(StableShading, AveragesWhatTheDiffuseLobeReflects) {
             for (int c = 0; c < 3; ++c) {
                 const auto of = [&](Signal signal) { return signals[signal].plane(c).data[i]; };
                 const float expected = of(Signal::IndirectDiffuse) * of(Signal::Albedo);
-                ASSERT_NEAR((of(Signal::Noisy) - direct[i][c]) * share[i][c], expected, 1e-4f * (1 + of(Signal::Noisy))) << i << ' ' << c;
+                ASSERT_NEAR((of(Signal::Noisy) - direct[i][c]) * share[i][c], expected, 1e-4f * (1 + of(Signal::Noisy)))
+                    << i << ' ' << c;
                 indirect += expected;
                 bothLobes += share[i][c] > 0.1f && share[i][c] < 0.9f;
             }

@@ -29,17 +29,21 @@ void forVisible(const SampleSet& samples, What what) {
     }
 }
 
-// All of a lamp's body is one primitive: what the camera passes on the way round must not stay visible from behind, black.
+// All of a lamp's body is one primitive: what the camera passes on the way round must not stay visible from behind,
+// black.
 TEST(StablePromises, NoSampleOfALampIsBlack) {
     const Extent2 extent{64, 48};
     Player player(extent);
     StableModule module;
     module.resize(extent);
     const auto posed = sceneOf(1);
-    const auto orbit = [](float turn) { return lookFrom(Vec3(1.5f * std::sin(turn), 1.3f, 1.5f * std::cos(turn) - 0.5f), Vec3(0, 1.3f, -0.5f)); };
+    const auto orbit = [](float turn) {
+        return lookFrom(Vec3(1.5f * std::sin(turn), 1.3f, 1.5f * std::cos(turn) - 0.5f), Vec3(0, 1.3f, -0.5f));
+    };
     for (FrameNumber frame = 0; frame < 30; ++frame) {
         const float turn = 0.08f * static_cast<float>(frame);
-        ASSERT_EQ(player.run(module, frame, posed, orbit(turn), orbit(turn - 0.08f), {.camera = true}), RunResult::Completed);
+        ASSERT_EQ(player.run(module, frame, posed, orbit(turn), orbit(turn - 0.08f), {.camera = true}),
+                  RunResult::Completed);
         int onLamp = 0;
         forVisible(module.samples(), [&](uint32_t i) {
             if (module.samples().locations[i].isSky() || module.samples().locations[i].instance != 3) return;
@@ -70,8 +74,8 @@ TEST(StablePromises, BlendedSurfacesKeepTheirDraws) {
     EXPECT_GT(onSheet, 30);
 }
 
-// That of scenes/text-plane.json comes nearer by half a percent a frame at most; at 3% samples spread faster than the default
-// tolerance has them replaced.
+// That of scenes/text-plane.json comes nearer by half a percent a frame at most; at 3% samples spread faster than the
+// default tolerance has them replaced.
 TEST(StablePromises, DensityStaysWhileTheCameraComesNearer) {
     const Extent2 extent{96, 64};
     for (const float step : {0.01f, 0.03f}) {
@@ -82,12 +86,15 @@ TEST(StablePromises, DensityStaysWhileTheCameraComesNearer) {
             setParameter([&](ParameterVisitor& v) { module.describe(v); }, "density", density);
             const auto posed = sceneOf(1);
             const auto nearer = [&](FrameNumber frame) {
-                return lookFrom(Vec3(0, 1, 0) + Vec3(0, 0.6f, 3.5f) * std::pow(1 - step, static_cast<float>(frame)), Vec3(0, 0.4f, -1));
+                return lookFrom(Vec3(0, 1, 0) + Vec3(0, 0.6f, 3.5f) * std::pow(1 - step, static_cast<float>(frame)),
+                                Vec3(0, 0.4f, -1));
             };
             for (FrameNumber frame = 0; frame < 40; ++frame) {
-                ASSERT_EQ(player.run(module, frame, posed, nearer(frame), nearer(frame - 1), {.camera = true}), RunResult::Completed);
+                ASSERT_EQ(player.run(module, frame, posed, nearer(frame), nearer(frame - 1), {.camera = true}),
+                          RunResult::Completed);
                 if (frame >= 10) {
-                    ASSERT_NEAR(countVisible(module.samples()) / (96.0 * 64 * density), 1, step < 0.02f ? 0.15 : 0.2) << step << " frame " << frame;
+                    ASSERT_NEAR(countVisible(module.samples()) / (96.0 * 64 * density), 1, step < 0.02f ? 0.15 : 0.2)
+                        << step << " frame " << frame;
                 }
             }
         }
@@ -109,8 +116,11 @@ TEST(StablePromises, WideImagesAreTheSameOnAnyNumberOfThreads) {
             const auto posed = sceneOf(1);
             std::string all;
             for (FrameNumber frame = 0; frame < 3; ++frame) {
-                const auto nearer = [](FrameNumber f) { return lookFrom(Vec3(0.02f * static_cast<float>(f), 1.6f, 3.5f), Vec3(0, 0.6f, 0)); };
-                ASSERT_EQ(player.run(module, frame, posed, nearer(frame), nearer(frame - 1), {.camera = true}), RunResult::Completed);
+                const auto nearer = [](FrameNumber f) {
+                    return lookFrom(Vec3(0.02f * static_cast<float>(f), 1.6f, 3.5f), Vec3(0, 0.6f, 0));
+                };
+                ASSERT_EQ(player.run(module, frame, posed, nearer(frame), nearer(frame - 1), {.camera = true}),
+                          RunResult::Completed);
                 all += player.digest(module) + '\n';
             }
             if (first.empty()) first = all;
@@ -120,8 +130,8 @@ TEST(StablePromises, WideImagesAreTheSameOnAnyNumberOfThreads) {
     setThreadCount(0);
 }
 
-// All samples of a dense screen land in a few pixels as the camera jumps back: 16 at most stay in each, and the analysis thins
-// them out at once.
+// All samples of a dense screen land in a few pixels as the camera jumps back: 16 at most stay in each, and the
+// analysis thins them out at once.
 TEST(StablePromises, APileOfSamplesLeavesSixteenAPixel) {
     const Extent2 extent{64, 48};
     Tracer tracer;
@@ -141,7 +151,19 @@ TEST(StablePromises, APileOfSamplesLeavesSixteenAPixel) {
     StageTimer timer;
     FrameSampling sampling;
     ReprojectedSamples piled;
-    ASSERT_TRUE(reprojectSamples({1, signals, *posed, far, poseCamera(view(), extent), {.camera = true}, wanted, tracer, sampling, timer, {}, {}}, dense, piled));
+    ASSERT_TRUE(reprojectSamples({1,
+                                  signals,
+                                  *posed,
+                                  far,
+                                  poseCamera(view(), extent),
+                                  {.camera = true},
+                                  wanted,
+                                  tracer,
+                                  sampling,
+                                  timer,
+                                  {},
+                                  {}},
+                                 dense, piled));
     std::map<size_t, int> landed;  // what the words cannot tell: how many came
     const ScreenPlaces screen(far);
     for (const SampleLocation& location : dense.locations) {
@@ -156,7 +178,8 @@ TEST(StablePromises, APileOfSamplesLeavesSixteenAPixel) {
     int overtaken = 0;
     for (uint32_t i = 0; i < dense.size(); ++i) {
         if (piled.rows[i] >= 48) continue;
-        const auto [at, isNew] = stays.try_emplace({piled.rows[i], piled.targets[i] & ~ReprojectedSamples::kOccluded}, i);
+        const auto [at, isNew] =
+            stays.try_emplace({piled.rows[i], piled.targets[i] & ~ReprojectedSamples::kOccluded}, i);
         if (isNew || !isOccluded(at->second) || isOccluded(i)) continue;
         at->second = i;
         ++overtaken;
@@ -165,7 +188,8 @@ TEST(StablePromises, APileOfSamplesLeavesSixteenAPixel) {
     std::vector<uint32_t> expected, found;
     for (const auto& [place, sample] : stays) expected.push_back(sample);
     for (size_t pixel = 0; pixel < piled.words.size(); ++pixel)
-        for (int k = 0; k < std::popcount(subpixel::occupied(piled.words[pixel])); ++k) found.push_back(piled.sources[piled.first[pixel] + static_cast<uint32_t>(k)]);
+        for (int k = 0; k < std::popcount(subpixel::occupied(piled.words[pixel])); ++k)
+            found.push_back(piled.sources[piled.first[pixel] + static_cast<uint32_t>(k)]);
     EXPECT_EQ(found, expected);
     int most = 0;
     for (const auto& [pixel, count] : landed) {
@@ -176,9 +200,11 @@ TEST(StablePromises, APileOfSamplesLeavesSixteenAPixel) {
     setParameter([&](ParameterVisitor& v) { module.describe(v); }, "density", 1.0f);
     const Camera back = lookFrom(Vec3(0, 30, 80), Vec3(0, 0.6f, 0));
     for (FrameNumber frame = 1; frame < 4; ++frame)
-        ASSERT_EQ(player.run(module, frame, posed, back, frame == 1 ? view() : back, {.camera = true}), RunResult::Completed);
+        ASSERT_EQ(player.run(module, frame, posed, back, frame == 1 ? view() : back, {.camera = true}),
+                  RunResult::Completed);
     uint32_t crowd = 0;
-    for (size_t p = 0; p < module.samples().words.size(); ++p) crowd = std::max(crowd, module.samples().first[p + 1] - module.samples().first[p]);
+    for (size_t p = 0; p < module.samples().words.size(); ++p)
+        crowd = std::max(crowd, module.samples().first[p + 1] - module.samples().first[p]);
     EXPECT_LE(crowd, 8u);
 }
 
@@ -190,7 +216,9 @@ TEST(StablePromises, AStoppedLightLeavesNothingBehind) {
     module.resize(extent);
     const auto bright = sceneOf(1, 2000), dim = sceneOf(1, 0);
     for (FrameNumber frame = 0; frame < 8; ++frame)
-        ASSERT_EQ(player.run(module, frame, frame < 7 ? bright : dim, view(), view(), {.camera = true, .lights = frame == 7}), RunResult::Completed);
+        ASSERT_EQ(
+            player.run(module, frame, frame < 7 ? bright : dim, view(), view(), {.camera = true, .lights = frame == 7}),
+            RunResult::Completed);
     for (FrameNumber frame = 8; frame < 12; ++frame)
         ASSERT_EQ(player.run(module, frame, dim, view(), view(), {}), RunResult::Completed);
     forVisible(module.samples(), [&](uint32_t i) {

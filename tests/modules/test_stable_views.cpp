@@ -28,7 +28,9 @@ TEST(Stable, ViewsTellOfTheSamples) {
         double ages = 0, paths = 0;
         for (int y = 0; y < extent.height; ++y)
             for (int x = 0; x < extent.width; ++x) {
-                const auto wordAt = [&](int u, int v) { return samples.words[static_cast<size_t>(v) * 48 + static_cast<size_t>(u)]; };
+                const auto wordAt = [&](int u, int v) {
+                    return samples.words[static_cast<size_t>(v) * 48 + static_cast<size_t>(u)];
+                };
                 const auto of = [&](const char* tap, int channel = 0) { return module.tap(tap).at(channel, x, y); };
                 const uint32_t word = wordAt(x, y);
                 ASSERT_EQ(of("occupancy"), static_cast<float>(word & 0xFFFF));

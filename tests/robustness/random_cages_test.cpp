@@ -1,5 +1,6 @@
 // Random cages of few vertices, where faces overlap, fold back, meet three at an edge or go round a vertex twice, under
-// random tags: every one tessellates, into vertices that are averages of the cage's. $LUMISCOPE_MUTATIONS sets how many.
+// random tags: every one tessellates, into vertices that are averages of the cage's. $LUMISCOPE_MUTATIONS sets how
+// many.
 #include <gtest/gtest.h>
 
 #include <algorithm>

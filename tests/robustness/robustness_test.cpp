@@ -43,9 +43,11 @@ protected:
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    void write(const std::string& name, const std::string& bytes) { writeFileAtomically(folder_ / name, std::string_view(bytes)); }
-    /// Loads `bytes` as a file of that name, or `opened`, which names it, with everything a session does to a scene: load,
-    /// pose and trace.
+    void write(const std::string& name, const std::string& bytes) {
+        writeFileAtomically(folder_ / name, std::string_view(bytes));
+    }
+    /// Loads `bytes` as a file of that name, or `opened`, which names it, with everything a session does to a scene:
+    /// load, pose and trace.
     void tryScene(const std::string& name, const std::string& bytes, uint64_t seed, const std::string& opened = "") {
         const fs::path path = folder_ / (opened.empty() ? name : opened);
         write(name, bytes);
@@ -69,7 +71,8 @@ protected:
         EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 10) << name << " seed " << seed;
     }
     /// $LUMISCOPE_SEEDS names a folder that gets the good files, as a corpus for the fuzz targets.
-    void mutateScene(const std::string& name, const std::string& good, bool isText, uint64_t base, const std::string& opened = "") {
+    void mutateScene(const std::string& name, const std::string& good, bool isText, uint64_t base,
+                     const std::string& opened = "") {
         if (const char* seeds = std::getenv("LUMISCOPE_SEEDS"))
             writeFileAtomically(fs::path(seeds) / (std::to_string(base) + "-" + name), std::string_view(good));
         tryScene(name, good, 0, opened);
@@ -198,7 +201,8 @@ TEST_F(Robustness, FilesThatVanishWhileLoading) {
                     traceAFew(loadScene(folder_ / opened, log, options));
                     ++accepted_;
                 } catch (const Error& error) {
-                    EXPECT_EQ(error.kind(), ErrorKind::BadInput) << opened << " without " << victim << ": " << error.what();
+                    EXPECT_EQ(error.kind(), ErrorKind::BadInput)
+                        << opened << " without " << victim << ": " << error.what();
                     ++refused_;
                 }
             }
@@ -222,7 +226,8 @@ TEST_F(Robustness, PngFiles) {
     Image8 picture{{16, 8}, std::vector<uint8_t>(16 * 8 * 4, 77)};
     const std::vector<uint8_t> good = encodePng(picture, {{kStateKey, "{}"}});
     for (int i = 0; i < caseCount(); ++i) {
-        const std::string bytes = Mutator(8000000u + static_cast<uint64_t>(i)).mutate({good.begin(), good.end()}, false);
+        const std::string bytes =
+            Mutator(8000000u + static_cast<uint64_t>(i)).mutate({good.begin(), good.end()}, false);
         try {
             decodePng(std::span(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()), "damaged.png");
         } catch (const Error&) {

@@ -41,8 +41,8 @@ inline std::shared_ptr<const Scene> underSmallSky(std::shared_ptr<const Scene> s
     return copy;
 }
 
-/// What a session does with a scene once it is open: two small frames, the second with the shutter open and one step on,
-/// all signals asked for. Throws Error as they do, and std::runtime_error for light that is no number.
+/// What a session does with a scene once it is open: two small frames, the second with the shutter open and one step
+/// on, all signals asked for. Throws Error as they do, and std::runtime_error for light that is no number.
 inline void traceAFew(std::shared_ptr<const Scene> loaded) {
     static Tracer tracer;
     const std::shared_ptr<const Scene> scene = underSmallSky(std::move(loaded));

@@ -75,8 +75,9 @@ public:
         if (step.stopped) stop.request_stop();
         const CameraPose pose = camera(step.shift);
         const FrameSampling sampling = samplingOf(step.frame, step.shift);
-        return module.run(
-            {step.frame, signals, *posed_, pose, camera(step.previousShift.value_or(step.shift)), step.changes, wanted, tracer_, sampling, timer, stop.get_token(), inspected}, out);
+        return module.run({step.frame, signals, *posed_, pose, camera(step.previousShift.value_or(step.shift)),
+                           step.changes, wanted, tracer_, sampling, timer, stop.get_token(), inspected},
+                          out);
     }
     /// The image of a completed run; frame 0 is a cut.
     Image image(Module& module, FrameNumber frame, const Signals& signals, Changes changes = {}) {
@@ -127,9 +128,7 @@ inline std::string testName(const testing::TestParamInfo<const ModuleEntry*>& en
 
 /// Bits of an image and of every tap of the module's last run.
 inline std::string digestOf(const Image& image, const Module& module) {
-    const auto bytes = [](const Image& i) {
-        return std::span(reinterpret_cast<const uint8_t*>(i.data()), i.bytes());
-    };
+    const auto bytes = [](const Image& i) { return std::span(reinterpret_cast<const uint8_t*>(i.data()), i.bytes()); };
     std::string text = digest(bytes(image));
     for (const Tap& tap : module.taps()) text += ' ' + digest(bytes(module.tap(tap.name)));
     return text;

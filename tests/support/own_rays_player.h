@@ -22,7 +22,8 @@ inline std::shared_ptr<const PosedScene> sceneOf(float ball, float lamp = 20) {
     Material gauze = lambert(0.7f);
     gauze.alphaMode = AlphaMode::Blend, gauze.alpha = 0.5f;
     tiny.add(boxMesh(Vec3(0.8f, 0.8f, 0.02f)), gauze, translation(Vec3(-0.8f, 0.5f, 1)));
-    if (ball >= 0) tiny.add(sphereMesh(0.4f, 24, 12), lambert(0.6f), translation(Vec3(0.5f, 0.4f, 0)) * scaling(Vec3(ball)));
+    if (ball >= 0)
+        tiny.add(sphereMesh(0.4f, 24, 12), lambert(0.6f), translation(Vec3(0.5f, 0.4f, 0)) * scaling(Vec3(ball)));
     Light light;
     light.type = LightType::Sphere, light.radius = 0.25f, light.radiance = Vec3(lamp);
     tiny.addLight(light, translation(Vec3(0, 1.3f, -0.5f)));
@@ -37,8 +38,8 @@ class Player {
 public:
     explicit Player(Extent2 extent) : extent_(extent) {}
 
-    RunResult run(Module& module, FrameNumber frame, const std::shared_ptr<const PosedScene>& posed, const Camera& camera, const Camera& before,
-                  Changes changes, std::stop_token stop = {}) {
+    RunResult run(Module& module, FrameNumber frame, const std::shared_ptr<const PosedScene>& posed,
+                  const Camera& camera, const Camera& before, Changes changes, std::stop_token stop = {}) {
         tracer_.bind(posed);
         changes.cut |= frame == 0;
         const CameraPose pose = poseCamera(camera, extent_);
@@ -47,14 +48,26 @@ public:
         TapSet wanted;
         for (const Tap& tap : module.taps()) wanted.insert(tap.name);
         StageTimer timer;
-        return module.run({frame, signals_, *posed, pose, changes.cut ? pose : poseCamera(before, extent_), changes, wanted, tracer_, sampling, timer, std::move(stop), {}},
+        return module.run({frame,
+                           signals_,
+                           *posed,
+                           pose,
+                           changes.cut ? pose : poseCamera(before, extent_),
+                           changes,
+                           wanted,
+                           tracer_,
+                           sampling,
+                           timer,
+                           std::move(stop),
+                           {}},
                           image);
     }
-    RunResult run(Module& module, FrameNumber frame, const Moment& now, const Moment& before, std::stop_token stop = {}) {
+    RunResult run(Module& module, FrameNumber frame, const Moment& now, const Moment& before,
+                  std::stop_token stop = {}) {
         auto& posed = scenes_[now.ball];
         if (!posed) posed = sceneOf(now.ball);
-        return run(module, frame, posed, view(now.shift), view(before.shift), {.camera = now.shift != before.shift, .objects = now.ball != before.ball},
-                   std::move(stop));
+        return run(module, frame, posed, view(now.shift), view(before.shift),
+                   {.camera = now.shift != before.shift, .objects = now.ball != before.ball}, std::move(stop));
     }
     std::string digest(const Module& module) const { return digestOf(image, module); }
 

@@ -12,10 +12,10 @@ namespace lumi::test {
 /// Shows the raw frame, and does what a test tells it to: stops in the middle, or waits and hears no stop.
 class ProbeModule : public Module {
 public:
-    static inline std::atomic<bool> stops{false};       ///< run() gives up
-    static inline std::atomic<bool> holds{false};       ///< run() waits until this is false
-    static inline std::atomic<bool> isHeld{false};      ///< it waits
-    static inline std::atomic<int> wrongScenes{0};      ///< runs whose tracer had another scene than the frame
+    static inline std::atomic<bool> stops{false};   ///< run() gives up
+    static inline std::atomic<bool> holds{false};   ///< run() waits until this is false
+    static inline std::atomic<bool> isHeld{false};  ///< it waits
+    static inline std::atomic<int> wrongScenes{0};  ///< runs whose tracer had another scene than the frame
 
     SignalSet reads() const override { return {Signal::Noisy}; }
     Jitter preferredJitter() const override { return Jitter::PerPixel; }
@@ -42,8 +42,7 @@ private:
 };
 
 /// For the whole test program: "probe".
-inline const CatalogAddition kProbeInCatalogue{{"probe", "Probe", "", []() -> std::unique_ptr<Module> {
-                                                    return std::make_unique<ProbeModule>();
-                                                }}};
+inline const CatalogAddition kProbeInCatalogue{
+    {"probe", "Probe", "", []() -> std::unique_ptr<Module> { return std::make_unique<ProbeModule>(); }}};
 
 }  // namespace lumi::test

@@ -28,7 +28,8 @@ struct CagePoint {
 };
 
 /// The cage's vertices after `levels` uniform refinements, and where they come to lie in the limit.
-inline std::vector<CagePoint> refined(const SubdivisionCage& cage, int levels, std::vector<CagePoint>* limit = nullptr) {
+inline std::vector<CagePoint> refined(const SubdivisionCage& cage, int levels,
+                                      std::vector<CagePoint>* limit = nullptr) {
     namespace Far = OpenSubdiv::Far;
     const auto refiner = makeRefiner(cage, "test");
     Far::TopologyRefiner::UniformOptions options(levels);

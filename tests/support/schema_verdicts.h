@@ -11,7 +11,8 @@ namespace lumi::test {
 inline bool haveSchemaValidator() { return std::system("python3 -c 'import jsonschema' 2>/dev/null") == 0; }
 
 /// What python3-jsonschema says of each document: '1' valid, '0' not. One run of Python for all.
-inline std::string schemaVerdicts(const std::filesystem::path& schema, const std::vector<std::filesystem::path>& documents) {
+inline std::string schemaVerdicts(const std::filesystem::path& schema,
+                                  const std::vector<std::filesystem::path>& documents) {
     std::string command =
         "python3 -c '"
         "import json,sys,jsonschema\n"

@@ -19,7 +19,8 @@ inline const std::filesystem::path kCornell = LUMISCOPE_SOURCE_DIR "/scenes/corn
 /// A session on the Cornell box, 32 x 24 pixels, and ways to wait for what it does.
 class SessionTest : public testing::Test {
 protected:
-    /// Waits until `condition` holds; fails after minutes, which only a deadlock takes: frames are drawn at a low priority.
+    /// Waits until `condition` holds; fails after minutes, which only a deadlock takes: frames are drawn at a low
+    /// priority.
     void waitFor(const char* what, const std::function<bool()>& condition) {
         Timer timer;
         while (!condition()) {

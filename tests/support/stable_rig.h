@@ -14,7 +14,8 @@ class Rig {
 public:
     explicit Rig(Extent2 extent) : extent_(extent) { path.maxDepth = 2; }
 
-    Image run(Module& module, FrameNumber frame, const std::shared_ptr<const PosedScene>& posed, const Camera& camera, Changes changes) {
+    Image run(Module& module, FrameNumber frame, const std::shared_ptr<const PosedScene>& posed, const Camera& camera,
+              Changes changes) {
         posed_ = posed;
         tracer.bind(posed);
         changes.cut |= frame == 0;
@@ -26,7 +27,10 @@ public:
         for (const Tap& tap : module.taps()) wanted.insert(tap.name);
         StageTimer timer;
         Image out;
-        EXPECT_EQ(module.run({frame, signals_, *posed, pose, previous_, changes, wanted, tracer, sampling, timer, {}, {}}, out), RunResult::Completed);
+        EXPECT_EQ(
+            module.run({frame, signals_, *posed, pose, previous_, changes, wanted, tracer, sampling, timer, {}, {}},
+                       out),
+            RunResult::Completed);
         EXPECT_EQ(countNonFinite(out), 0);
         previous_ = pose;
         return out;
@@ -53,7 +57,8 @@ inline TinyScene balls(float scale = 1) {
     tiny.add(floorMesh(), lambert(Vec3(0.6f, 0.5f, 0.4f)));
     for (int i = 0; i < 5; ++i)
         tiny.add(sphereMesh(0.4f, 24, 12), lambert(0.2f + 0.15f * static_cast<float>(i)),
-                 translation(Vec3(static_cast<float>(i) - 2, 0.4f, 0.5f * static_cast<float>(i % 2))) * scaling(Vec3(scale)));
+                 translation(Vec3(static_cast<float>(i) - 2, 0.4f, 0.5f * static_cast<float>(i % 2))) *
+                     scaling(Vec3(scale)));
     Light lamp;
     lamp.type = LightType::Sphere;
     lamp.radius = 0.3f;

@@ -48,7 +48,8 @@ inline std::shared_ptr<const Scene> tinyScene() { return std::make_shared<Scene>
 /// The same, with the camera moving along keys for two seconds.
 inline std::shared_ptr<const Scene> movingScene() {
     auto scene = std::make_shared<Scene>(makeTinyScene());
-    scene->cameras[0].keys = {{.time = 0, .eye = {0, 2, 5}, .target = {0, 0, 0}}, {.time = 2, .eye = {1, 2, 5}, .target = {0, 0, 0}}};
+    scene->cameras[0].keys = {{.time = 0, .eye = {0, 2, 5}, .target = {0, 0, 0}},
+                              {.time = 2, .eye = {1, 2, 5}, .target = {0, 0, 0}}};
     return scene;
 }
 

@@ -19,9 +19,7 @@ inline Material lambert(const Vec3& reflectance) {
     m.roughness = 1;
     return m;
 }
-inline Material lambert(float reflectance) {
-    return lambert(Vec3(reflectance));
-}
+inline Material lambert(float reflectance) { return lambert(Vec3(reflectance)); }
 
 inline Material metal(float reflectance, float roughness) {
     Material m;
@@ -32,9 +30,7 @@ inline Material metal(float reflectance, float roughness) {
 }
 
 /// One rectangle of `size` around the origin in the xz plane, facing +Y.
-inline Mesh floorMesh(float size = 20) {
-    return rectangleMesh(size, size, Facing::Y);
-}
+inline Mesh floorMesh(float size = 20) { return rectangleMesh(size, size, Facing::Y); }
 
 /// A sphere without smooth normals, so that its geometry is all there is.
 inline Mesh facetedSphere(float radius, int segments = 32) {

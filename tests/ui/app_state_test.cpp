@@ -68,7 +68,8 @@ TEST_F(AppStateTest, TheSurfaceAskedForIsWhatTheCameraOrbitsAround) {
     const Camera after = session.document().camera();
     EXPECT_EQ(after.eye, before.eye);
     EXPECT_NE(after.target, before.target);
-    EXPECT_NEAR(glm::dot(glm::normalize(after.target - after.eye), glm::normalize(before.target - before.eye)), 1, 1e-5f);
+    EXPECT_NEAR(glm::dot(glm::normalize(after.target - after.eye), glm::normalize(before.target - before.eye)), 1,
+                1e-5f);
 }
 
 }  // namespace

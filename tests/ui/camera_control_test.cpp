@@ -37,7 +37,8 @@ TEST(CameraControl, aCameraWithoutUpOrViewStillMoves) {
         for (const Vec3& target : {front().target, front().eye}) {
             Camera camera = front();
             camera.up = up, camera.target = target;
-            for (const Camera& moved : {lookAround(camera, 0.1f, 0.1f), orbit(camera, 0.1f, 0.1f), flyBy(camera, {1, 2, 3})})
+            for (const Camera& moved :
+                 {lookAround(camera, 0.1f, 0.1f), orbit(camera, 0.1f, 0.1f), flyBy(camera, {1, 2, 3})})
                 EXPECT_TRUE(isFinite(moved.eye) && isFinite(moved.target));
             EXPECT_NE(lookAround(camera, 0.1f, 0.2f).target, camera.target);
             EXPECT_GT(glm::distance(flyBy(camera, {0, 1, 0}).eye, camera.eye), 0.99f);

@@ -26,9 +26,7 @@ void beginDrawer(const char* name, const ImRect& area, ImU32 colour, ImVec2 padd
     beginArea(name, area, colour, padding, (kFixedWindow & ~ImGuiWindowFlags_NoBringToFrontOnFocus) | extra);
 }
 
-void endFixed() {
-    ImGui::End();
-}
+void endFixed() { ImGui::End(); }
 
 std::string sceneName(const AppState& state) {
     const Scene* scene = state.document.scene();

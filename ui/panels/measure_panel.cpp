@@ -24,11 +24,13 @@ std::string valueText(const PaneMeasurement& pane, const std::string& id) {
 void drawProgress(AppState& state, const ReferenceStatus& status) {
     const ReferenceProgress& progress = status.progress;
     const float width = ImGui::GetContentRegionAvail().x;
-    const float fraction = progress.target > 0 ? static_cast<float>(progress.samples) / static_cast<float>(progress.target) : -1;
+    const float fraction =
+        progress.target > 0 ? static_cast<float>(progress.samples) / static_cast<float>(progress.target) : -1;
     progressBar(fraction, width, px(6));
     const std::string text = progress.waiting ? "Another process makes the same reference; waiting for it"
-                             : progress.target > 0 ? fmt::format("{} of {} samples a pixel", progress.samples, progress.target)
-                                                   : "Preparing";
+                             : progress.target > 0
+                                 ? fmt::format("{} of {} samples a pixel", progress.samples, progress.target)
+                                 : "Preparing";
     smallText(text);
     if (textButton("cancel-reference", "Stop")) state.metrics.cancelReference();
     if (ImGui::IsItemHovered()) tooltip("Stop", "What is done so far is kept: it goes on from there the next time.");
@@ -63,8 +65,8 @@ void drawReference(AppState& state) {
         if (textButton("clear-reference", "Clear", nullptr, false, half)) state.metrics.clearReference();
     }
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - px(72));
-    const bool entered = ImGui::InputTextWithHint("##reference-file", "or an image file: .exr .hdr .png", &state.referenceFile,
-                                                  ImGuiInputTextFlags_EnterReturnsTrue);
+    const bool entered = ImGui::InputTextWithHint("##reference-file", "or an image file: .exr .hdr .png",
+                                                  &state.referenceFile, ImGuiInputTextFlags_EnterReturnsTrue);
     markItem("reference-file");
     ImGui::SameLine(0, px(8));
     if ((textButton("load-reference", "Load", nullptr, false, px(64)) || entered) && !state.referenceFile.empty())
@@ -83,7 +85,8 @@ void drawValues(AppState& state, const LiveMeasurement& measured) {
         ImGui::TableNextColumn();
         for (const PaneMeasurement& pane : measured.panes) {
             ImGui::TableNextColumn();
-            smallText(shortened((&pane == &measured.panes[0] ? "A  " : "B  ") + pane.module, ImGui::GetContentRegionAvail().x));
+            smallText(shortened((&pane == &measured.panes[0] ? "A  " : "B  ") + pane.module,
+                                ImGui::GetContentRegionAvail().x));
         }
     }
     for (const Metric& metric : metricCatalog()) {
@@ -102,8 +105,10 @@ void drawValues(AppState& state, const LiveMeasurement& measured) {
             const bool better = two && mine != pane.values.end() && its != other.values.end() &&
                                 (metric.higherIsBetter ? mine->second > its->second : mine->second < its->second);
             const WithFont mono(ui().fonts.mono);
-            ImGui::TextColored(toVec4(better ? palette::kGood : palette::kText), "%s", valueText(pane, metric.id).c_str());
-            if (const auto reason = pane.reasons.find(metric.id); reason != pane.reasons.end() && ImGui::IsItemHovered())
+            ImGui::TextColored(toVec4(better ? palette::kGood : palette::kText), "%s",
+                               valueText(pane, metric.id).c_str());
+            if (const auto reason = pane.reasons.find(metric.id);
+                reason != pane.reasons.end() && ImGui::IsItemHovered())
                 tooltip(metric.title, reason->second);
             markItem(fmt::format("metric:{}:{}", metric.id, i));
         }
@@ -111,7 +116,8 @@ void drawValues(AppState& state, const LiveMeasurement& measured) {
     ImGui::EndTable();
     for (const PaneMeasurement& pane : measured.panes)
         if (pane.nonFinitePixels > 0)
-            smallText(fmt::format("{}: {} pixels not finite, counted nowhere", pane.module, pane.nonFinitePixels), palette::kWarning);
+            smallText(fmt::format("{}: {} pixels not finite, counted nowhere", pane.module, pane.nonFinitePixels),
+                      palette::kWarning);
     smallText(fmt::format("measured in {:.0f} ms", measured.ms), palette::kFaint);
 }
 
@@ -151,8 +157,8 @@ void drawCurves(const AppState& state) {
             if (usable(p)) list.PathLineTo(at(p));
         list.PathStroke(i == 0 ? palette::kAccent : palette::kWarning, 0, px(1.5f));
     }
-    smallText(fmt::format("{} from {:.0f} to {:.0f} samples, {:.3g} to {:.3g}", id, std::pow(10, lowX), std::pow(10, highX),
-                          std::pow(10, highY), std::pow(10, lowY)),
+    smallText(fmt::format("{} from {:.0f} to {:.0f} samples, {:.3g} to {:.3g}", id, std::pow(10, lowX),
+                          std::pow(10, highX), std::pow(10, highY), std::pow(10, lowY)),
               palette::kFaint);
 }
 

@@ -28,7 +28,8 @@ void drawCameras(AppState& state);
 void drawMessages(AppState& state, const ImRect& area);
 void drawToast(AppState& state, const ImRect& area);
 
-/// The light that tells whether the scene's signals keep their contract, right-aligned in `area`; returns its left edge.
+/// The light that tells whether the scene's signals keep their contract, right-aligned in `area`; returns its left
+/// edge.
 float drawSignalsLight(AppState& state, const ImRect& area);
 /// The drawer with every rule of the contract.
 void drawSignals(AppState& state, const ImRect& area);

@@ -29,7 +29,8 @@ bool sceneRow(const std::string& id, const std::string& title, const std::string
         list.AddRectFilled(corner, corner + ImVec2(width, height), IM_COL32(255, 255, 255, 16), px(5));
     drawIcon(list, Icon::Layers, corner + ImVec2(px(24), 0.5f * height), px(18),
              ImGui::IsItemHovered() ? palette::kAccent : palette::kDim);
-    list.AddText(corner + ImVec2(px(48), px(6)), there ? palette::kText : palette::kDim, elided(title, width - px(60)).c_str());
+    list.AddText(corner + ImVec2(px(48), px(6)), there ? palette::kText : palette::kDim,
+                 elided(title, width - px(60)).c_str());
     const WithFont small(ui().fonts.small);
     list.AddText(corner + ImVec2(px(48), px(25)), palette::kDim, elided(detail, width - px(60)).c_str());
     ImGui::SetCursorScreenPos(corner + ImVec2(0, height + px(2)));
@@ -66,7 +67,8 @@ bool drawScenes(AppState& state) {
     smallText("Built in", palette::kFaint);
     for (const SceneEntry& entry : builtIn()) {
         const bool there = entry.missing.empty();
-        if (sceneRow(entry.name, entry.title, entry.name + (there ? "" : ": its files are not in $LUMISCOPE_ASSETS"), there)) {
+        if (sceneRow(entry.name, entry.title, entry.name + (there ? "" : ": its files are not in $LUMISCOPE_ASSETS"),
+                     there)) {
             state.open(entry.path);  // what is missing is the error that loading it shows
             opened = true;
         }

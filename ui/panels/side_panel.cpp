@@ -49,25 +49,13 @@ void drawSidePanel(AppState& state, const ImRect& area) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(16), px(8)));
     ImGui::BeginChild(kTabs[static_cast<int>(state.tab)], ImVec2(0, 0), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     ImGui::PopStyleVar();
-    if (!state.document.present())
-        dimText("No scene is open.");
-    else
-        switch (state.tab) {
-            case PanelTab::View:
-                drawViewPanel(state);
-                break;
-            case PanelTab::Render:
-                drawRenderPanel(state);
-                break;
-            case PanelTab::Scene:
-                drawScenePanel(state);
-                break;
-            case PanelTab::Measure:
-                drawMeasurePanel(state);
-                break;
-            case PanelTab::Profile:
-                drawProfilePanel(state);
-                break;
+    if (!state.document.present()) dimText("No scene is open.");
+    else switch (state.tab) {
+            case PanelTab::View: drawViewPanel(state); break;
+            case PanelTab::Render: drawRenderPanel(state); break;
+            case PanelTab::Scene: drawScenePanel(state); break;
+            case PanelTab::Measure: drawMeasurePanel(state); break;
+            case PanelTab::Profile: drawProfilePanel(state); break;
         }
     ImGui::Dummy(ImVec2(0, px(12)));
     ImGui::EndChild();

@@ -34,7 +34,8 @@ void drawFinding(const ContractFinding& finding) {
     const bool none = finding.holds() && finding.checked == 0;
     const ImU32 colour = !finding.holds() ? palette::kError : none ? palette::kFaint : palette::kGood;
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::GetWindowDrawList()->AddCircleFilled(at + ImVec2(px(10), 0.5f * ImGui::GetTextLineHeight()), px(3.5f), colour);
+    ImGui::GetWindowDrawList()->AddCircleFilled(at + ImVec2(px(10), 0.5f * ImGui::GetTextLineHeight()), px(3.5f),
+                                                colour);
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + px(24));
     ImGui::PushTextWrapPos(0);
     if (finding.holds()) {
@@ -70,9 +71,10 @@ float drawSignalsLight(AppState& state, const ImRect& area) {
     markItem("signals");
     const bool hovered = ImGui::IsItemHovered();
     if (hovered)
-        tooltip("What every filter assumes of its input",
-                "Unit normals, albedo in range, terms that add up, motion that leads to the previous pixel, finite values.",
-                shortcutText(UiCommand::ToggleSignals));
+        tooltip(
+            "What every filter assumes of its input",
+            "Unit normals, albedo in range, terms that add up, motion that leads to the previous pixel, finite values.",
+            shortcutText(UiCommand::ToggleSignals));
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddCircleFilled(ImVec2(corner.x + px(10), area.GetCenter().y), px(4), light.colour);
     list.AddText(ImVec2(corner.x + px(20), std::floor(area.GetCenter().y - 0.5f * ImGui::GetFontSize())),

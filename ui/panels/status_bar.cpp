@@ -17,9 +17,7 @@ ImU32 colourOf(Severity severity) {
                                            : palette::kDim;
 }
 
-std::string firstLine(const std::string& text) {
-    return text.substr(0, text.find('\n'));
-}
+std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 /// What a frame took.
 std::string duration(double ms) {

@@ -55,8 +55,8 @@ void drawProgress(AppState& state, const ImRect& area) {
         const ImVec2 corner = ImGui::GetCursorScreenPos();
         const WithFont small(ui().fonts.small);
         const char* text = "drawing again";
-        ImGui::GetWindowDrawList()->AddText(ImVec2(corner.x + px(132) - ImGui::CalcTextSize(text).x, area.Min.y + px(9)),
-                                            palette::kDim, text);
+        ImGui::GetWindowDrawList()->AddText(
+            ImVec2(corner.x + px(132) - ImGui::CalcTextSize(text).x, area.Min.y + px(9)), palette::kDim, text);
         ImGui::SetCursorScreenPos(ImVec2(corner.x, area.Min.y + px(28)));
         return progressBar(*replayed, px(132), px(4));
     }

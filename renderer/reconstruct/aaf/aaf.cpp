@@ -12,10 +12,24 @@ namespace {
 
 std::vector<Tap> declareTaps() {
     std::vector<Tap> taps = temporalTaps();
-    taps.push_back({.name = "occlusion", .channels = "Y", .help = "Least d1/d2 - 1 of the window's blocked light samples, accumulated; 0 where none was blocked"});
-    taps.push_back({.name = "filterWidth", .channels = "Y", .unit = "m", .help = "beta, the Gaussian's standard deviation on the surface"});
-    taps.push_back({.name = "integratedDirect", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "Direct illumination before the filter"});
-    taps.push_back({.name = "filteredDirect", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "Direct illumination after it"});
+    taps.push_back(
+        {.name = "occlusion",
+         .channels = "Y",
+         .help = "Least d1/d2 - 1 of the window's blocked light samples, accumulated; 0 where none was blocked"});
+    taps.push_back({.name = "filterWidth",
+                    .channels = "Y",
+                    .unit = "m",
+                    .help = "beta, the Gaussian's standard deviation on the surface"});
+    taps.push_back({.name = "integratedDirect",
+                    .channels = "RGB",
+                    .unit = "W/(m^2 sr)",
+                    .colourMap = "none",
+                    .help = "Direct illumination before the filter"});
+    taps.push_back({.name = "filteredDirect",
+                    .channels = "RGB",
+                    .unit = "W/(m^2 sr)",
+                    .colourMap = "none",
+                    .help = "Direct illumination after it"});
     return taps;
 }
 
@@ -29,13 +43,22 @@ SignalSet AafModule::reads() const {
 
 void AafModule::describe(ParameterVisitor& v) {
     v.toggle("temporal", temporal_,
-             {.label = "Temporal accumulation", .help = "Integrate light and occlusion distances over time ([Schied17, sec. 5.1])"});
+             {.label = "Temporal accumulation",
+              .help = "Integrate light and occlusion distances over time ([Schied17, sec. 5.1])"});
     v.when(temporal_, [&] { temporalSettings_.describe(v); });
     v.integer("window-radius", windowRadius_,
-              {.label = "Window radius", .min = 0, .max = 8, .unit = "px", .help = "Of the window that d2max is gathered in"});
+              {.label = "Window radius",
+               .min = 0,
+               .max = 8,
+               .unit = "px",
+               .help = "Of the window that d2max is gathered in"});
     v.number("overlap", overlap_,
-             {.label = "k", .min = 0.5, .max = 10, .help = "How many standard deviations of the filter the sharpest penumbra's own is wide"});
-    v.integer("max-radius", maxRadius_, {.label = "Largest radius", .min = 1, .max = 64, .unit = "px", .help = "Of the filter on the screen"});
+             {.label = "k",
+              .min = 0.5,
+              .max = 10,
+              .help = "How many standard deviations of the filter the sharpest penumbra's own is wide"});
+    v.integer("max-radius", maxRadius_,
+              {.label = "Largest radius", .min = 1, .max = 64, .unit = "px", .help = "Of the filter on the screen"});
     describeAntialiasing(v);
 }
 
@@ -66,11 +89,12 @@ bool AafModule::integrate(const FrameContext& context, const Step& step) {
         return true;
     }
     const TemporalOptions options = temporalOptions(frame(), captured());
-    if (!filterTemporally(context.signals, temporalSettings_, {&frame().direct, &frame().indirect, &occlusion_}, step.previous,
-                          step.next, context.stop, options))
+    if (!filterTemporally(context.signals, temporalSettings_, {&frame().direct, &frame().indirect, &occlusion_},
+                          step.previous, step.next, context.stop, options))
         return false;
     captured().keep("historyLength", step.next.length);
-    if (Lineage* lineage = inspected()) addHistoryRows(*lineage, context.signals, step.previous, temporalSettings_, options.dropped);
+    if (Lineage* lineage = inspected())
+        addHistoryRows(*lineage, context.signals, step.previous, temporalSettings_, options.dropped);
     return true;
 }
 
@@ -89,9 +113,11 @@ void AafModule::chooseWidths(const Image& occlusion) {
     captured().keep("filterWidth", width_);
 }
 
-void AafModule::blur(const Signals& signals, const CameraPose& camera, bool alongRows, const Image& in, Image& out) const {
+void AafModule::blur(const Signals& signals, const CameraPose& camera, bool alongRows, const Image& in,
+                     Image& out) const {
     if (out.extent() != extent()) out.reset(extent(), 3);
-    const Image &position = signals[Signal::Position], &normal = signals[Signal::Normal], &inverseDepth = signals[Signal::InverseDepth];
+    const Image &position = signals[Signal::Position], &normal = signals[Signal::Normal],
+                &inverseDepth = signals[Signal::InverseDepth];
     const IdImage& object = signals.ids(Signal::ObjectId);
     parallelFor(extent().height, [&](int64_t row) {
         const int y = static_cast<int>(row);

@@ -3,8 +3,8 @@
 
 namespace lumi {
 
-/// Axis-aligned filtering of soft shadows [Mehta12], for direct light: a Gaussian on the surface, as wide as the sharpest
-/// penumbra there allows, of standard deviation
+/// Axis-aligned filtering of soft shadows [Mehta12], for direct light: a Gaussian on the surface, as wide as the
+/// sharpest penumbra there allows, of standard deviation
 ///
 ///     beta = sigma (d1/d2max - 1) / k
 ///
@@ -12,13 +12,15 @@ namespace lumi {
 /// blocker; applied in two passes, along rows and along columns. Indirect light is only accumulated over time.
 ///
 /// Differs from the paper:
-/// - One shadow ray a pixel: d2max comes from a window, and is accumulated over time as visibility is ([Schied17, sec. 5.1]).
+/// - One shadow ray a pixel: d2max comes from a window, and is accumulated over time as visibility is ([Schied17, sec.
+///   5.1]).
 /// - No adaptive sampling.
-/// - What is filtered is demodulated direct light, visibility times irradiance, since one random point of the light tells
-///   no irradiance free of noise.
-/// - So irradiance is noise that [Mehta12], which filters visibility alone, does not have: where the window holds no blocker
-///   nothing is blurred, and that noise stays, but for what accumulation takes.
-/// - sigma is measured from the points that the frame sampled on the light; lights of any kind are taken so, each for itself.
+/// - What is filtered is demodulated direct light, visibility times irradiance, since one random point of the light
+///   tells no irradiance free of noise.
+/// - So irradiance is noise that [Mehta12], which filters visibility alone, does not have: where the window holds no
+///   blocker nothing is blurred, and that noise stays, but for what accumulation takes.
+/// - sigma is measured from the points that the frame sampled on the light; lights of any kind are taken so, each for
+///   itself.
 /// - The blockers are found by sending the frame's shadow rays once more (trace/tracer.h, shade()).
 class AafModule : public ScreenFilter {
 public:

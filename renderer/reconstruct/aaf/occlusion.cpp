@@ -41,13 +41,15 @@ struct Pixels {
 Pixels pixelsOf(const FrameContext& context, int top, int bottom) {
     const int width = context.signals.extent().width;
     const uint64_t first = context.sampling.firstSample;
-    const Vec2 jitter = context.sampling.jitter == Jitter::PerFrame ? frameJitter(first, context.sampling.seed) : Vec2(0);
+    const Vec2 jitter =
+        context.sampling.jitter == Jitter::PerFrame ? frameJitter(first, context.sampling.seed) : Vec2(0);
     Pixels pixels;
     for (int y = top; y < bottom; ++y)
         for (int x = 0; x < width; ++x) {
             SurfacePoint point = surfacePointAt(context, x, y);
             if (!context.tracer.has(point)) point = {};
-            const PathStart start = cameraStart(context.camera, Vec2(x, y) + Vec2(0.5f) + jitter, Vec2(0.5f), point.time);
+            const PathStart start =
+                cameraStart(context.camera, Vec2(x, y) + Vec2(0.5f) + jitter, Vec2(0.5f), point.time);
             const float distance = point.valid() ? glm::length(context.tracer.position(point) - start.ray.origin) : 0;
             pixels.points.push_back(point);
             pixels.wo.push_back(-start.ray.direction);
@@ -81,7 +83,8 @@ bool measureOcclusion(const FrameContext& context, Image& out) {
         const Pixels pixels = pixelsOf(context, top, bottom);
         ShadowObserver shadows(pixels.points.size());
         PathObserver* const observers[] = {&shadows};
-        if (!context.tracer.shade(pixels.points, pixels.wo, pixels.keys, settings, context.sampling.seed, {}, observers, context.stop, pixels.cones))
+        if (!context.tracer.shade(pixels.points, pixels.wo, pixels.keys, settings, context.sampling.seed, {}, observers,
+                                  context.stop, pixels.cones))
             return false;
         for (size_t i = 0; i < pixels.points.size(); ++i) {
             const ShadowSample& sample = shadows[i];
@@ -97,7 +100,8 @@ bool measureOcclusion(const FrameContext& context, Image& out) {
     std::map<uint32_t, float> deviations;
     for (const auto& [light, spread] : spreads) deviations[static_cast<uint32_t>(light) + 1] = spread.deviation();
     for (int64_t i = 0; i < extent.area(); ++i)
-        if (const auto found = deviations.find(lights.data()[i]); found != deviations.end()) out.plane(2).data[i] = found->second;
+        if (const auto found = deviations.find(lights.data()[i]); found != deviations.end())
+            out.plane(2).data[i] = found->second;
     return true;
 }
 
@@ -117,7 +121,8 @@ void gatherOcclusion(const Signals& signals, int radius, const Image& in, Image&
             float least = kInfinity, size = 0;
             for (int j = std::max(y - radius, 0); j <= std::min(y + radius, extent.height - 1); ++j)
                 for (int i = std::max(x - radius, 0); i <= std::min(x + radius, extent.width - 1); ++i) {
-                    if (in.at(1, i, j) == 0 || !(in.at(0, i, j) < least) || !facesAlike(normal, {x, y}, {i, j})) continue;
+                    if (in.at(1, i, j) == 0 || !(in.at(0, i, j) < least) || !facesAlike(normal, {x, y}, {i, j}))
+                        continue;
                     least = in.at(0, i, j);
                     size = in.at(2, i, j);
                 }

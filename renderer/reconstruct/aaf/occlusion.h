@@ -3,16 +3,17 @@
 
 namespace lumi {
 
-/// What the light samples of a frame met, a pixel: R: d1/d2 - 1 of the blocked ones, d1 being the light's distance from the
-/// surface and d2 from the blocker (for infinite lights the blocker's distance in metres), G: 1 where blocked, B: the
-/// standard deviation of the light (metres; for infinite lights an angle).
+/// What the light samples of a frame met, a pixel: R: d1/d2 - 1 of the blocked ones, d1 being the light's distance from
+/// the surface and d2 from the blocker (for infinite lights the blocker's distance in metres), G: 1 where blocked, B:
+/// the standard deviation of the light (metres; for infinite lights an angle).
 ///
-/// It sends the frame's own shadow rays, with the same random numbers, once more and asks what they hit. Returns false if
-/// stopped.
+/// It sends the frame's own shadow rays, with the same random numbers, once more and asks what they hit. Returns false
+/// if stopped.
 bool measureOcclusion(const FrameContext& context, Image& out);
 
-/// Least R among the blocked pixels of the window of `radius` that see a surface alike (the greatest d2 has the sharpest
-/// shadow), 1 in G, and B of the light that it belongs to; 0 in all three where there is none. `in` and `out` as above.
+/// Least R among the blocked pixels of the window of `radius` that see a surface alike (the greatest d2 has the
+/// sharpest shadow), 1 in G, and B of the light that it belongs to; 0 in all three where there is none. `in` and `out`
+/// as above.
 void gatherOcclusion(const Signals& signals, int radius, const Image& in, Image& out);
 
 /// Their normals are within 26 degrees of each other.

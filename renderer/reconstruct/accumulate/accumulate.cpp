@@ -21,15 +21,14 @@ struct JoinMoments {
 };
 
 /// Squared deviations within one frame, from the frame's unbiased variance of one sample.
-double squaresWithin(float sampleVariance, double samples) { return static_cast<double>(sampleVariance) * (samples - 1); }
+double squaresWithin(float sampleVariance, double samples) {
+    return static_cast<double>(sampleVariance) * (samples - 1);
+}
 
 }  // namespace
 
 AccumulateModule::AccumulateModule()
-    : taps_{{.name = "sampleCount",
-             .channels = "Y",
-             .unit = "spp",
-             .help = "Samples in the mean"},
+    : taps_{{.name = "sampleCount", .channels = "Y", .unit = "spp", .help = "Samples in the mean"},
             {.name = "standardError",
              .channels = "RGB",
              .unit = "W/(m^2 sr)",
@@ -38,16 +37,18 @@ AccumulateModule::AccumulateModule()
                      "before the second sample"}} {}
 
 void AccumulateModule::describe(ParameterVisitor& v) {
-    v.toggle("limit", limited_, {.label = "Stop at a number of samples", .help = "Whether the mean stops growing at max-samples"});
+    v.toggle("limit", limited_,
+             {.label = "Stop at a number of samples", .help = "Whether the mean stops growing at max-samples"});
     v.when(limited_, [&] {
-        v.integer("max-samples", maxSamples_,
-                  {.label = "Samples to stop at",
-                   .min = 1,
-                   .max = 1 << 20,
-                   .scale = Scale::Log,
-                   .unit = "spp",
-                   .help = "The mean is complete with the frame that reaches this many samples a pixel; one that has more "
-                           "already is complete, and keeps them until it starts again"});
+        v.integer(
+            "max-samples", maxSamples_,
+            {.label = "Samples to stop at",
+             .min = 1,
+             .max = 1 << 20,
+             .scale = Scale::Log,
+             .unit = "spp",
+             .help = "The mean is complete with the frame that reaches this many samples a pixel; one that has more "
+                     "already is complete, and keeps them until it starts again"});
     });
     v.choice("reset", reset_,
              {.label = "Start again on",
@@ -152,7 +153,8 @@ void AccumulateModule::writeStandardError() {
             const double within = squaresWithin(last_.sampleVariance.data()[i], n);
             double squares = within;
             if (n == 0) squares = history_.squares.data()[i];
-            else if (before > 0) squares = join(history_.sum.data()[i], history_.squares.data()[i], last_.sum.data()[i], within);
+            else if (before > 0)
+                squares = join(history_.sum.data()[i], history_.squares.data()[i], last_.sum.data()[i], within);
             standardError_.data()[i] = static_cast<float>(std::sqrt(squares / ((before + n - 1) * (before + n))));
         }
     });

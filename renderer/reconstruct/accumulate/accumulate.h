@@ -7,8 +7,8 @@ namespace lumi {
 /// The progressive mean of all samples since the last reset: the reference that every method is measured against.
 ///
 /// The mean of N samples has the same bits whether they came as one frame of N samples a pixel, as N frames of one, or
-/// as any aligned split in between: sums are in double over aligned power-of-two blocks (image_block_sum.h, math/block_sum.h).
-/// NaN and infinity stay in their pixel.
+/// as any aligned split in between: sums are in double over aligned power-of-two blocks (image_block_sum.h,
+/// math/block_sum.h). NaN and infinity stay in their pixel.
 class AccumulateModule : public Module {
 public:
     enum class Reset { AnyChange, CutOnly };

@@ -9,11 +9,31 @@ namespace lumi {
 namespace {
 
 std::vector<Tap> gradientTaps() {
-    return {{.name = "gradientSample", .channels = "Y", .range = ValueRange{0, 1}, .colourMap = "gray", .help = "1 in strata whose sample of the frame before was shaded again"},
-            {.name = "directGradient", .channels = "Y", .unit = "W/(m^2 sr)", .colourMap = "signed", .help = "Direct light of that sample now minus then, before the filter"},
-            {.name = "indirectGradient", .channels = "Y", .unit = "W/(m^2 sr)", .colourMap = "signed", .help = "Indirect light of that sample now minus then, before the filter"},
-            {.name = "directLoss", .channels = "Y", .range = ValueRange{0, 1}, .colourMap = "magma", .help = "lambda: how much of the history of direct light is given up"},
-            {.name = "indirectLoss", .channels = "Y", .range = ValueRange{0, 1}, .colourMap = "magma", .help = "lambda: how much of the history of indirect light is given up"}};
+    return {{.name = "gradientSample",
+             .channels = "Y",
+             .range = ValueRange{0, 1},
+             .colourMap = "gray",
+             .help = "1 in strata whose sample of the frame before was shaded again"},
+            {.name = "directGradient",
+             .channels = "Y",
+             .unit = "W/(m^2 sr)",
+             .colourMap = "signed",
+             .help = "Direct light of that sample now minus then, before the filter"},
+            {.name = "indirectGradient",
+             .channels = "Y",
+             .unit = "W/(m^2 sr)",
+             .colourMap = "signed",
+             .help = "Indirect light of that sample now minus then, before the filter"},
+            {.name = "directLoss",
+             .channels = "Y",
+             .range = ValueRange{0, 1},
+             .colourMap = "magma",
+             .help = "lambda: how much of the history of direct light is given up"},
+            {.name = "indirectLoss",
+             .channels = "Y",
+             .range = ValueRange{0, 1},
+             .colourMap = "magma",
+             .help = "lambda: how much of the history of indirect light is given up"}};
 }
 
 /// Geometry at the middle of each stratum; slopes are per stratum.
@@ -22,7 +42,8 @@ void sampleGuide(const Signals& signals, Image& guide) {
     if (guide.extent() != strata) guide.reset(strata, 6);
     for (int y = 0; y < strata.height; ++y)
         for (int x = 0; x < strata.width; ++x) {
-            const int px = std::min(x * kStratum + 1, extent.width - 1), py = std::min(y * kStratum + 1, extent.height - 1);
+            const int px = std::min(x * kStratum + 1, extent.width - 1),
+                      py = std::min(y * kStratum + 1, extent.height - 1);
             guide.at(0, x, y) = signals[Signal::InverseDepth].at(0, px, py);
             for (int c = 0; c < 2; ++c) guide.at(1 + c, x, y) = kStratum * signals[Signal::DepthGradient].at(c, px, py);
             for (int c = 0; c < 3; ++c) guide.at(3 + c, x, y) = signals[Signal::Normal].at(c, px, py);
@@ -46,7 +67,10 @@ AsvgfModule::AsvgfModule() : SvgfModule(gradientTaps()) { useAlpha(0.1f); }
 
 void AsvgfModule::describe(ParameterVisitor& v) {
     v.integer("gradient-levels", levels_,
-              {.label = "Gradient levels", .min = 0, .max = 7, .help = "Iterations of the à-trous transform over the strata's differences (sec. 4.3)"});
+              {.label = "Gradient levels",
+               .min = 0,
+               .max = 7,
+               .help = "Iterations of the à-trous transform over the strata's differences (sec. 4.3)"});
     v.number("gradient-strength", strength_,
              {.label = "Gradient strength",
               .min = 0,
@@ -83,7 +107,8 @@ bool AsvgfModule::filterStrata(const FrameContext& context, const std::vector<Re
         planes.rgb.fill(0);
         planes.luminance.fill(0);
         for (const ReshadedSample& sample : samples) {
-            const float before = c == 0 ? sample.before.direct : sample.before.indirect, now = c == 0 ? sample.now.direct : sample.now.indirect;
+            const float before = c == 0 ? sample.before.direct : sample.before.indirect,
+                        now = c == 0 ? sample.now.direct : sample.now.indirect;
             planes.rgb.data()[sample.stratum] = now - before;
             planes.rgb.plane(1).data[sample.stratum] = std::max(now, before);
         }
@@ -103,7 +128,8 @@ bool AsvgfModule::filterStrata(const FrameContext& context, const std::vector<Re
             const int y = static_cast<int>(row);
             for (int x = 0; x < extent().width; ++x) {
                 const float greater = filtered.at(1, x / kStratum, y / kStratum);
-                const float relative = greater > 1e-8f ? std::fabs(filtered.at(0, x / kStratum, y / kStratum)) / greater : 0;
+                const float relative =
+                    greater > 1e-8f ? std::fabs(filtered.at(0, x / kStratum, y / kStratum)) / greater : 0;
                 loss_[c].at(0, x, y) = std::min(1.0f, strength_ * relative);
             }
         });
@@ -123,7 +149,8 @@ void AsvgfModule::keepTaps(const std::vector<ReshadedSample>& samples) {
             const int left = static_cast<int>(sample.stratum % static_cast<size_t>(strata.width)) * kStratum;
             const int top = static_cast<int>(sample.stratum / static_cast<size_t>(strata.width)) * kStratum;
             for (int y = top; y < std::min(top + kStratum, extent().height); ++y)
-                for (int x = left; x < std::min(left + kStratum, extent().width); ++x) image->at(0, x, y) = valueOf(sample);
+                for (int x = left; x < std::min(left + kStratum, extent().width); ++x)
+                    image->at(0, x, y) = valueOf(sample);
         }
     };
     fill("gradientSample", [](const ReshadedSample&) { return 1.0f; });
@@ -135,7 +162,8 @@ size_t AsvgfModule::byteCount() const {
     size_t sum = SvgfModule::byteCount() + guide_.bytes() + loss_[0].bytes() + loss_[1].bytes();
     for (const auto& levels : strata_)
         for (const Illumination& planes : levels) sum += planes.bytes();
-    return sum + samples_.byteCount([](const std::vector<GradientSample>& s) { return s.size() * sizeof(GradientSample); });
+    return sum +
+           samples_.byteCount([](const std::vector<GradientSample>& s) { return s.size() * sizeof(GradientSample); });
 }
 
 }  // namespace lumi

@@ -48,8 +48,8 @@ std::vector<ComponentLuminance> shadeAll(const FrameContext& context, const Batc
     if (batch.points.empty()) return {};
     PathLightingObserver lighting(batch.points.size());
     PathObserver* const observers[] = {&lighting};
-    if (!context.tracer.shade(batch.points, batch.wo, batch.keys, context.sampling.path, context.sampling.seed, {}, observers,
-                              context.stop, batch.cones))
+    if (!context.tracer.shade(batch.points, batch.wo, batch.keys, context.sampling.path, context.sampling.seed, {},
+                              observers, context.stop, batch.cones))
         return {};
     std::vector<ComponentLuminance> values(batch.points.size());
     for (size_t i = 0; i < values.size(); ++i) values[i] = luminanceOf(lighting[i]);
@@ -62,11 +62,13 @@ float luminanceAt(const Image& rgb, int x, int y) {
 
 }  // namespace
 
-std::vector<GradientSample> drawGradientSamples(const FrameContext& context, const Image& direct, const Image& indirect) {
+std::vector<GradientSample> drawGradientSamples(const FrameContext& context, const Image& direct,
+                                                const Image& indirect) {
     const Extent2 extent = context.signals.extent(), strata = strataOf(extent);
     std::vector<GradientSample> samples(static_cast<size_t>(strata.area()));
     for (int64_t i = 0; i < strata.area(); ++i) {
-        const int left = static_cast<int>(i % strata.width) * kStratum, top = static_cast<int>(i / strata.width) * kStratum;
+        const int left = static_cast<int>(i % strata.width) * kStratum,
+                  top = static_cast<int>(i / strata.width) * kStratum;
         const uint32_t drawn = hashCombine(static_cast<uint32_t>(i), static_cast<uint32_t>(context.frame));
         const int x = left + static_cast<int>(drawn % 3u), y = top + static_cast<int>(drawn / 3u % 3u);
         if (x >= extent.width || y >= extent.height || context.signals.ids(Signal::ObjectId).at(0, x, y) == 0) continue;
@@ -90,7 +92,8 @@ std::vector<GradientSample> drawGradientSamples(const FrameContext& context, con
     return samples;
 }
 
-std::vector<ReshadedSample> reshade(const FrameContext& context, const std::vector<GradientSample>& samples, bool& stopped) {
+std::vector<ReshadedSample> reshade(const FrameContext& context, const std::vector<GradientSample>& samples,
+                                    bool& stopped) {
     const Extent2 extent = context.signals.extent(), strata = strataOf(extent);
     const CameraPose& camera = context.camera;
     std::vector<uint8_t> taken(static_cast<size_t>(strata.area()), 0);
@@ -100,14 +103,17 @@ std::vector<ReshadedSample> reshade(const FrameContext& context, const std::vect
         if (!context.tracer.has(sample.point)) continue;
         // Forward projection, and a test of visibility against the present frame's surfaces.
         const Vec3 position = context.tracer.position(sample.point), pixel = camera.project(position);
-        if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < static_cast<float>(extent.width) && pixel.y < static_cast<float>(extent.height))) continue;
+        if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < static_cast<float>(extent.width) &&
+              pixel.y < static_cast<float>(extent.height)))
+            continue;
         const int x = static_cast<int>(pixel.x), y = static_cast<int>(pixel.y);
         if (context.signals.ids(Signal::ObjectId).at(0, x, y) != sample.point.instance + 1) continue;
         const float z = 1 / pixel.z;  // linear view depth
         const Image& slope = context.signals[Signal::DepthGradient];
         const float allowed = 0.02f * std::fabs(z) + std::fabs(slope.at(0, x, y)) + std::fabs(slope.at(1, x, y));
         if (!(std::fabs(context.signals[Signal::InverseDepth].at(0, x, y) - z) <= allowed)) continue;
-        const auto stratum = static_cast<size_t>(y / kStratum) * static_cast<size_t>(strata.width) + static_cast<size_t>(x / kStratum);
+        const auto stratum =
+            static_cast<size_t>(y / kStratum) * static_cast<size_t>(strata.width) + static_cast<size_t>(x / kStratum);
         if (taken[stratum]) continue;
         taken[stratum] = 1;
         reshaded.push_back({stratum, sample.luminance, {}});

@@ -8,7 +8,9 @@ namespace lumi {
 
 /// Strata of 3x3 pixels, each with at most one gradient sample [Schied18, sec. 4].
 constexpr int kStratum = 3;
-inline Extent2 strataOf(Extent2 extent) { return {(extent.width + kStratum - 1) / kStratum, (extent.height + kStratum - 1) / kStratum}; }
+inline Extent2 strataOf(Extent2 extent) {
+    return {(extent.width + kStratum - 1) / kStratum, (extent.height + kStratum - 1) / kStratum};
+}
 
 /// Demodulated luminance of direct and indirect light.
 struct ComponentLuminance {
@@ -29,13 +31,16 @@ struct ReshadedSample {
 };
 
 /// One pixel of each stratum, drawn by a hash of stratum and frame, whose first sample the next frame will shade again.
-/// `direct` and `indirect` are the frame's demodulated light. At one sample a pixel that is what the sample brought; with
-/// more, the drawn samples are shaded once by themselves. Empty if stopped.
-std::vector<GradientSample> drawGradientSamples(const FrameContext& context, const Image& direct, const Image& indirect);
+/// `direct` and `indirect` are the frame's demodulated light. At one sample a pixel that is what the sample brought;
+/// with more, the drawn samples are shaded once by themselves. Empty if stopped.
+std::vector<GradientSample> drawGradientSamples(const FrameContext& context, const Image& direct,
+                                                const Image& indirect);
 
-/// Projects the samples of the frame before to where their surface points are now, keeps those that the camera still sees,
-/// at most one a stratum of the present frame, and shades them with their old random numbers. `stopped` is set if so.
-std::vector<ReshadedSample> reshade(const FrameContext& context, const std::vector<GradientSample>& samples, bool& stopped);
+/// Projects the samples of the frame before to where their surface points are now, keeps those that the camera still
+/// sees, at most one a stratum of the present frame, and shades them with their old random numbers. `stopped` is set if
+/// so.
+std::vector<ReshadedSample> reshade(const FrameContext& context, const std::vector<GradientSample>& samples,
+                                    bool& stopped);
 
 /// What these read.
 inline SignalSet gradientSignals() {

@@ -12,7 +12,8 @@ std::vector<Tap> declareTaps() {
                         .channels = "RGB",
                         .unit = "W/(m^2 sr)",
                         .colourMap = "none",
-                        .help = level == 0 ? "Illumination before the first level" : "Illumination after this level; the last one's where fewer run"});
+                        .help = level == 0 ? "Illumination before the first level"
+                                           : "Illumination after this level; the last one's where fewer run"});
     return taps;
 }
 
@@ -26,7 +27,8 @@ SignalSet EawModule::reads() const {
 
 void EawModule::describe(ParameterVisitor& v) {
     input_.describe(v);
-    v.integer("levels", levels_, {.label = "Wavelet levels", .min = 0, .max = kMaxLevels, .help = "Iterations of the à-trous transform"});
+    v.integer("levels", levels_,
+              {.label = "Wavelet levels", .min = 0, .max = kMaxLevels, .help = "Iterations of the à-trous transform"});
     v.number("sigma-color", edges_.sigmaColour,
              {.label = "Sigma colour",
               .min = 0.01,
@@ -35,7 +37,11 @@ void EawModule::describe(ParameterVisitor& v) {
               .unit = "W/(m^2 sr)",
               .help = "sigma_rt at the first level, of demodulated illumination; it halves with each level"});
     v.number("sigma-normal", edges_.sigmaNormal,
-             {.label = "Sigma normal", .min = 0.01, .max = 10, .scale = Scale::Log, .help = "sigma_n at the first level; it doubles with each level"});
+             {.label = "Sigma normal",
+              .min = 0.01,
+              .max = 10,
+              .scale = Scale::Log,
+              .help = "sigma_n at the first level; it doubles with each level"});
     v.number("sigma-position", edges_.sigmaPosition,
              {.label = "Sigma position",
               .min = 0.001,
@@ -53,7 +59,8 @@ bool EawModule::filter(const FrameContext& context, const Step& step, Image& out
         if (level > 0 && level <= levels_) {
             Image& to = planes_[level % 2];
             if (Lineage* lineage = inspected())
-                addEdgeAvoidingRows(*lineage, "level " + std::to_string(level), context.signals, edges_, level - 1, *from);
+                addEdgeAvoidingRows(*lineage, "level " + std::to_string(level), context.signals, edges_, level - 1,
+                                    *from);
             if (!edgeAvoidingLevel(context.signals, edges_, level - 1, *from, to, context.stop)) return false;
             from = &to;
         }

@@ -19,7 +19,7 @@
 namespace lumi {
 namespace {
 
-constexpr uint64_t kNone = ~uint64_t{0};   ///< no sample landed there
+constexpr uint64_t kNone = ~uint64_t{0};  ///< no sample landed there
 constexpr int64_t kPixels = 1 << 12;
 constexpr uint32_t kStream = 0x3a472002u;  ///< second word of the samples' keys
 enum Code : uint8_t { kNew, kKept, kMoved };
@@ -27,12 +27,29 @@ enum Code : uint8_t { kNew, kKept, kMoved };
 }  // namespace
 
 Martin2002Module::Martin2002Module()
-    : taps_({{.name = "verdicts", .channels = "Y", .range = ValueRange{0, 2}, .colourMap = "turbo", .help = "The pixel's sample: 0 new, 1 kept, 2 moved to what its ray met"},
-             {.name = "age", .channels = "Y", .unit = "frames", .range = ValueRange{0, 64}, .help = "Frames since the pixel's sample was new or moved"},
-             {.name = "unfiltered", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "The frame before the box filter over time"}}) {}
+    : taps_({{.name = "verdicts",
+              .channels = "Y",
+              .range = ValueRange{0, 2},
+              .colourMap = "turbo",
+              .help = "The pixel's sample: 0 new, 1 kept, 2 moved to what its ray met"},
+             {.name = "age",
+              .channels = "Y",
+              .unit = "frames",
+              .range = ValueRange{0, 64},
+              .help = "Frames since the pixel's sample was new or moved"},
+             {.name = "unfiltered",
+              .channels = "RGB",
+              .unit = "W/(m^2 sr)",
+              .colourMap = "none",
+              .help = "The frame before the box filter over time"}}) {}
 
 void Martin2002Module::describe(ParameterVisitor& v) {
-    v.integer("frames", frames_, {.label = "Frames averaged", .min = 1, .max = kMostFrames, .unit = "frames", .help = "Length of the box filter over time"});
+    v.integer("frames", frames_,
+              {.label = "Frames averaged",
+               .min = 1,
+               .max = kMostFrames,
+               .unit = "frames",
+               .help = "Length of the box filter over time"});
     v.choice("average", average_,
              {.label = "Averages along",
               .options = {"screen", "scene"},
@@ -59,8 +76,8 @@ void Martin2002Module::forget() {
     taps_.clear();
 }
 
-/// Each sample of the frame before to the pixel where its surface is, the closest winning; ties by the lower index, so that
-/// the threads' order is no part of it.
+/// Each sample of the frame before to the pixel where its surface is, the closest winning; ties by the lower index, so
+/// that the threads' order is no part of it.
 void Martin2002Module::project(const FrameContext& context, const Kept& previous) {
     nearest_.assign(static_cast<size_t>(extent_.area()), kNone);
     places_.resize(previous.locations.size());
@@ -75,10 +92,12 @@ void Martin2002Module::project(const FrameContext& context, const Kept& previous
             if (location.isSky()) depth = std::numeric_limits<float>::max();
             const uint64_t mine = static_cast<uint64_t>(std::bit_cast<uint32_t>(depth)) << 32 | i;
             const Vec2 place = places_[i];
-            const size_t p = static_cast<size_t>(place.y) * static_cast<size_t>(extent_.width) + static_cast<size_t>(place.x);
+            const size_t p =
+                static_cast<size_t>(place.y) * static_cast<size_t>(extent_.width) + static_cast<size_t>(place.x);
             std::atomic_ref<uint64_t> held(nearest_[p]);
             uint64_t seen = held.load(std::memory_order_relaxed);
-            while (mine < seen && !held.compare_exchange_weak(seen, mine, std::memory_order_relaxed)) {}
+            while (mine < seen && !held.compare_exchange_weak(seen, mine, std::memory_order_relaxed)) {
+            }
         }
     });
 }
@@ -90,7 +109,8 @@ void Martin2002Module::reproject(const FrameContext& context, const Kept& previo
     next.locations.resize(pixels), next.places.resize(pixels);
     next.names.resize(pixels), next.pathsDrawn.resize(pixels), next.ages.resize(pixels);
     inWorld_.resize(pixels), codes_.resize(pixels);
-    const size_t followed = average_ == Average::Scene ? std::min(static_cast<size_t>(frames_) - 1, previous.colours.size()) : 0;
+    const size_t followed =
+        average_ == Average::Scene ? std::min(static_cast<size_t>(frames_) - 1, previous.colours.size()) : 0;
     next.colours.resize(1 + followed);
     for (std::vector<Vec3>& colours : next.colours) colours.resize(pixels);
     parallelRanges(extent_.area(), kPixels, [&](int64_t begin, int64_t end) {
@@ -106,7 +126,8 @@ void Martin2002Module::reproject(const FrameContext& context, const Kept& previo
             const auto i = static_cast<size_t>(nearest_[p] & 0xFFFFFFFFu);
             next.locations[p] = previous.locations[i];
             next.places[p] = places_[i];
-            next.names[p] = previous.names[i], next.pathsDrawn[p] = previous.pathsDrawn[i], next.ages[p] = previous.ages[i] + 1;
+            next.names[p] = previous.names[i], next.pathsDrawn[p] = previous.pathsDrawn[i],
+            next.ages[p] = previous.ages[i] + 1;
             for (size_t k = 0; k < followed; ++k) next.colours[k + 1][p] = previous.colours[k][i];
             inWorld_[p] = placeInWorld(context.tracer, next.locations[p]);
         }
@@ -116,9 +137,12 @@ void Martin2002Module::reproject(const FrameContext& context, const Kept& previo
 void Martin2002Module::verifyAndShade(const FrameContext& context, Kept& next) {
     const std::span<const uint32_t> order = order_.items();
     constexpr int64_t kPaths = 1024;
-    parallelRanges(static_cast<int64_t>(order.size()), kPaths, [&](int64_t begin, int64_t end) {
-        verifyAndShade(context, order.subspan(static_cast<size_t>(begin), static_cast<size_t>(end - begin)), next);
-    }, context.stop);
+    parallelRanges(
+        static_cast<int64_t>(order.size()), kPaths,
+        [&](int64_t begin, int64_t end) {
+            verifyAndShade(context, order.subspan(static_cast<size_t>(begin), static_cast<size_t>(end - begin)), next);
+        },
+        context.stop);
 }
 
 void Martin2002Module::verifyAndShade(const FrameContext& context, std::span<const uint32_t> pixels, Kept& next) {
@@ -140,24 +164,29 @@ void Martin2002Module::verifyAndShade(const FrameContext& context, std::span<con
         const uint32_t p = pixels[k];
         SampleLocation& location = next.locations[p];
         constexpr float kEpsilon = VerificationSettings::kEpsilon;
-        if (!location.isNew() && findsSample(context.tracer, location, rays[k].direction, hits[k], distances[k], kEpsilon)) {
+        if (!location.isNew() &&
+            findsSample(context.tracer, location, rays[k].direction, hits[k], distances[k], kEpsilon)) {
             if (!location.isSky()) hits[k] = {location.point(), distances[k]};
         } else {
             if (!location.isNew()) codes_[p] = kMoved, next.ages[p] = 0;
-            location = hits[k].valid() ? SampleLocation::ofPoint(hits[k].point) : SampleLocation::ofSky(rays[k].direction);
+            location =
+                hits[k].valid() ? SampleLocation::ofPoint(hits[k].point) : SampleLocation::ofSky(rays[k].direction);
         }
         starts[k].key = {next.names[p], kStream, next.pathsDrawn[p]++};
         starts[k].slot = static_cast<uint32_t>(k);
     }
     std::vector<Vec3> radiance(count);
-    context.tracer.continuePaths(starts, hits, context.sampling.path, context.sampling.seed, radiance, {}, context.stop);
+    context.tracer.continuePaths(starts, hits, context.sampling.path, context.sampling.seed, radiance, {},
+                                 context.stop);
     for (size_t k = 0; k < count; ++k) next.colours.front()[pixels[k]] = radiance[k];
 }
 
 /// The image of one sample a pixel; false if stopped.
-bool Martin2002Module::reconstruct(const FrameContext& context, std::span<const Vec2> places, std::span<const Vec3> colours, Image& out) {
+bool Martin2002Module::reconstruct(const FrameContext& context, std::span<const Vec2> places,
+                                   std::span<const Vec3> colours, Image& out) {
     if (scattered_.filter == ScatteredSettings::Filter::Gaussian)
-        return reconstructScattered({extent_, first_, places, colours, {}}, scattered_, out, weights_, context.stop) >= 0;
+        return reconstructScattered({extent_, first_, places, colours, {}}, scattered_, out, weights_, context.stop) >=
+               0;
     out.reset(extent_, 3);
     parallelRanges(extent_.area(), 1 << 14, [&](int64_t begin, int64_t end) {
         for (int64_t p = begin; p < end; ++p)
@@ -195,7 +224,8 @@ bool Martin2002Module::filter(const FrameContext& context, const Kept* previous,
     const auto image = std::make_shared<Image>();
     {
         const auto measured = context.timer.measure("reconstruction");
-        if ((onScreen || taps_.wants("unfiltered")) && !reconstruct(context, next.places, next.colours.front(), *image)) return false;
+        if ((onScreen || taps_.wants("unfiltered")) && !reconstruct(context, next.places, next.colours.front(), *image))
+            return false;
     }
     taps_.keep("unfiltered", *image);
     const auto measured = context.timer.measure("temporal");
@@ -252,7 +282,8 @@ size_t Martin2002Module::byteCount() const {
         for (const auto& image : kept.images) images.insert(image.get());
         return kept.bytes();
     });
-    size_t bytes = samples + nearest_.size() * 8 + places_.size() * sizeof(Vec2) + inWorld_.size() * 13 + order_.bytes() + taps_.bytes();
+    size_t bytes = samples + nearest_.size() * 8 + places_.size() * sizeof(Vec2) + inWorld_.size() * 13 +
+                   order_.bytes() + taps_.bytes();
     bytes += means_.size() * sizeof(Vec3) + first_.size() * 4 + weights_.bytes();
     for (const Image* image : images) bytes += image->bytes();
     return bytes;

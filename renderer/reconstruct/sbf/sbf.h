@@ -4,9 +4,9 @@
 
 namespace lumi {
 
-/// SURE-based filtering [Li12]: a bank of cross-bilateral filters, of which each pixel takes the one with the least error
-/// by Stein's unbiased risk estimate; on direct and indirect illumination together, demodulated, with temporal accumulation
-/// before it or without: the baseline of [Schied17, sec. 5.1].
+/// SURE-based filtering [Li12]: a bank of cross-bilateral filters, of which each pixel takes the one with the least
+/// error by Stein's unbiased risk estimate; on direct and indirect illumination together, demodulated, with temporal
+/// accumulation before it or without: the baseline of [Schied17, sec. 5.1].
 ///
 /// Differs from the paper:
 /// - No adaptive sampling, and the variance of a pixel is estimated from a window, there being one sample in each

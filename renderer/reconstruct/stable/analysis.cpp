@@ -15,7 +15,8 @@ constexpr int64_t kRows = 8;
 
 DensityRow rowOf(const std::vector<uint32_t>& words, Extent2 extent, int y, float* density) {
     const uint32_t* here = words.data() + static_cast<ptrdiff_t>(y) * extent.width;
-    return {y > 0 ? here - extent.width : nullptr, here, y + 1 < extent.height ? here + extent.width : nullptr, extent.width, density};
+    return {y > 0 ? here - extent.width : nullptr, here, y + 1 < extent.height ? here + extent.width : nullptr,
+            extent.width, density};
 }
 
 /// From which difference on eq. 1 acts.
@@ -47,14 +48,16 @@ void DensitySettings::describe(ParameterVisitor& v) {
               .scale = Scale::Log,
               .unit = "samples/px",
               .help = "d_target: visible samples a pixel that the analysis aims at (eq. 1)"});
-    v.number("tolerance", tolerance,
-             {.label = "Density tolerance",
-              .min = 0.1,
-              .max = 4,
-              .scale = Scale::Log,
-              .unit = "samples/px",
-              .help = "d_tolerance: how far the local density may be off before samples are added or removed (eq. 1); below 0.5 "
-                      "neighbours undo each other's changes and it never settles"});
+    v.number(
+        "tolerance", tolerance,
+        {.label = "Density tolerance",
+         .min = 0.1,
+         .max = 4,
+         .scale = Scale::Log,
+         .unit = "samples/px",
+         .help =
+             "d_tolerance: how far the local density may be off before samples are added or removed (eq. 1); below 0.5 "
+             "neighbours undo each other's changes and it never settles"});
     v.number("jitter", jitter,
              {.label = "Jitter of new samples",
               .min = 0,
@@ -69,7 +72,8 @@ float localDensity(const std::vector<uint32_t>& words, Extent2 extent, int x, in
         for (int sx = -2; sx < 6; ++sx) {
             const int column = 4 * x + sx, line = 4 * y + sy;
             if (column < 0 || line < 0 || column >= 4 * extent.width || line >= 4 * extent.height) continue;
-            const uint32_t word = words[static_cast<size_t>(line / 4) * static_cast<size_t>(extent.width) + static_cast<size_t>(column / 4)];
+            const uint32_t word = words[static_cast<size_t>(line / 4) * static_cast<size_t>(extent.width) +
+                                        static_cast<size_t>(column / 4)];
             count += (subpixel::visible(word) >> (line % 4 * 4 + column % 4)) & 1u;
         }
     const auto inside = [](int at, int size) { return 1 + (at > 0 ? 0.5f : 0.0f) + (at + 1 < size ? 0.5f : 0.0f); };
@@ -116,31 +120,36 @@ Vec2 newSamplePlace(int index, float jitter, uint32_t random) {
     return {along(index % subpixel::kSide, x), along(index / subpixel::kSide, y)};
 }
 
-uint32_t pixelRandom(int64_t pixel, uint32_t frame) { return hashCombine(static_cast<uint32_t>(pixel), frame, 0x57ab1eu); }
+uint32_t pixelRandom(int64_t pixel, uint32_t frame) {
+    return hashCombine(static_cast<uint32_t>(pixel), frame, 0x57ab1eu);
+}
 
 bool analyseSamples(const std::vector<uint32_t>& words, Extent2 extent, const DensitySettings& settings, uint32_t frame,
                     std::vector<PixelChange>& changes, float* density, std::stop_token stop) {
     changes.resize(words.size());
     std::atomic<bool> any{false};
     const float acts = leastDifference(settings);
-    parallelRanges(extent.height, kRows, [&](int64_t begin, int64_t end) {
-        std::vector<float> scratch(static_cast<size_t>(extent.width));
-        bool here = false;
-        for (int64_t y = begin; y < end; ++y) {
-            float* line = density ? density + y * extent.width : scratch.data();
-            analysisKernels().densityRow(rowOf(words, extent, static_cast<int>(y), line));
-            std::fill_n(changes.begin() + y * extent.width, extent.width, PixelChange());
-            for (int x = 0; x < extent.width; ++x) {
-                if (std::fabs(settings.density - line[x]) < acts) continue;
-                const int change = sampleChange(line[x], settings);
-                const int64_t pixel = y * extent.width + x;
-                PixelChange& decided = changes[static_cast<size_t>(pixel)];
-                decided = changePixel(words[static_cast<size_t>(pixel)], change, pixelRandom(pixel, frame));
-                here |= (decided.added | decided.removed) != 0;
+    parallelRanges(
+        extent.height, kRows,
+        [&](int64_t begin, int64_t end) {
+            std::vector<float> scratch(static_cast<size_t>(extent.width));
+            bool here = false;
+            for (int64_t y = begin; y < end; ++y) {
+                float* line = density ? density + y * extent.width : scratch.data();
+                analysisKernels().densityRow(rowOf(words, extent, static_cast<int>(y), line));
+                std::fill_n(changes.begin() + y * extent.width, extent.width, PixelChange());
+                for (int x = 0; x < extent.width; ++x) {
+                    if (std::fabs(settings.density - line[x]) < acts) continue;
+                    const int change = sampleChange(line[x], settings);
+                    const int64_t pixel = y * extent.width + x;
+                    PixelChange& decided = changes[static_cast<size_t>(pixel)];
+                    decided = changePixel(words[static_cast<size_t>(pixel)], change, pixelRandom(pixel, frame));
+                    here |= (decided.added | decided.removed) != 0;
+                }
             }
-        }
-        if (here) any = true;
-    }, stop);
+            if (here) any = true;
+        },
+        stop);
     return any;
 }
 

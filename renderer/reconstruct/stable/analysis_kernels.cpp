@@ -37,8 +37,8 @@ inline uint32_t gatherLine(const uint32_t* line, int x, uint32_t half) {
     return (sides & half) | (visible(line[x]) & half) << 16;
 }
 
-/// Bits set in both words. As one sum: a compiler that finds a single word's count here makes it an instruction that takes one
-/// pixel at a time.
+/// Bits set in both words. As one sum: a compiler that finds a single word's count here makes it an instruction that
+/// takes one pixel at a time.
 inline uint32_t countBits(uint32_t a, uint32_t b) {
     a = a - ((a >> 1) & 0x55555555u), b = b - ((b >> 1) & 0x55555555u);
     const uint32_t fours = (a & 0x33333333u) + ((a >> 2) & 0x33333333u) + (b & 0x33333333u) + ((b >> 2) & 0x33333333u);

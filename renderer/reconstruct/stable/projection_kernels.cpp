@@ -85,7 +85,8 @@ void project(const ProjectionRow& row) {
         uint32_t *targets = row.targets + first, *rows = row.rows + first;
         for (int i = 0; i < count; ++i) {
             static_assert(SampleSet::kOccluded == 1);
-            targets[i] = static_cast<uint32_t>(columns[i]) | static_cast<uint32_t>(flags[i] & SampleSet::kOccluded) << 31;
+            targets[i] = static_cast<uint32_t>(columns[i]) | static_cast<uint32_t>(flags[i] & SampleSet::kOccluded)
+                                                                 << 31;
             rows[i] = lanes.found[i] ? static_cast<uint32_t>(lines[i]) : nowhere;
         }
     }

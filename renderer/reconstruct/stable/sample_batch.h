@@ -4,8 +4,8 @@
 
 namespace lumi {
 
-/// Samples of whole pixels whose rays are traced together: all that is needed between making them and keeping their light,
-/// so that they pass memory once. Vectors by slot have a value for each sample, in the order of pixels.
+/// Samples of whole pixels whose rays are traced together: all that is needed between making them and keeping their
+/// light, so that they pass memory once. Vectors by slot have a value for each sample, in the order of pixels.
 struct SampleBatch {
     static constexpr uint32_t kIdle = ~0u;  ///< slot of a ray that is not there
     static constexpr size_t kMost = 1024;   ///< starts, and samples: as many as the tracer keeps together

@@ -50,32 +50,49 @@ void copyFrom(const T* from, const uint32_t* sources, T* to, size_t count) {
 }  // namespace
 
 size_t SampleFrame::bytes() const {
-    return heldBytes(colours) + heldBytes(verdicts) + heldBytes(hidden) + heldBytes(motions) + heldBytes(changes) + heldBytes(chunkSums) +
-           reprojected.bytes();
+    return heldBytes(colours) + heldBytes(verdicts) + heldBytes(hidden) + heldBytes(motions) + heldBytes(changes) +
+           heldBytes(chunkSums) + reprojected.bytes();
 }
 
 void numberSamples(SampleFrame& frame, bool withIndirect, SampleSet& next) {
     const uint32_t sum = beginPixels(frame, next);
     if (sum > next.locations.capacity())
-        checkMemory("the samples of stable ray tracing", (sum + sum / 8) * (SampleSet::bytesASample(withIndirect) + SampleFrame::kBytesASample));
+        checkMemory("the samples of stable ray tracing",
+                    (sum + sum / 8) * (SampleSet::bytesASample(withIndirect) + SampleFrame::kBytesASample));
     next.resize(sum, withIndirect);
     resizeAnew(frame.motions, frame.wantsMotions ? sum : 0), resizeAnew(frame.verdicts, sum);
     resizeAnew(frame.hidden, sum), resizeAnew(frame.colours, withIndirect ? sum : 0);
 }
 
-SampleGatherer::SampleGatherer(const SampleSet& previous, const DensitySettings& settings, uint32_t random, bool keepsDirect, SampleFrame& frame,
-                               SampleSet& next)
-    : jitter_(settings.jitter), random_(random), width_(static_cast<uint32_t>(next.extent.width)),
-      reprojectedWords_(frame.reprojected.words.data()), reprojectedFirst_(frame.reprojected.first.data()),
-      sources_(frame.reprojected.sources.data()), changes_(frame.changes.data()), oldLocations_(previous.locations.data()),
+SampleGatherer::SampleGatherer(const SampleSet& previous, const DensitySettings& settings, uint32_t random,
+                               bool keepsDirect, SampleFrame& frame, SampleSet& next)
+    : jitter_(settings.jitter),
+      random_(random),
+      width_(static_cast<uint32_t>(next.extent.width)),
+      reprojectedWords_(frame.reprojected.words.data()),
+      reprojectedFirst_(frame.reprojected.first.data()),
+      sources_(frame.reprojected.sources.data()),
+      changes_(frame.changes.data()),
+      oldLocations_(previous.locations.data()),
       oldInWorld_((frame.reprojected.moved.empty() ? previous.inWorld : frame.reprojected.moved).data()),
       oldDirect_(keepsDirect ? previous.direct.data() : nullptr),
-      oldIndirect_(previous.indirect.empty() ? nullptr : previous.indirect.data()), oldNotes_(previous.notes.data()),
-      oldFlags_(previous.flags.data()), oldPlaces_(previous.places.data()), newPlaces_(frame.reprojected.places.data()),
-      first_(next.first.data()), words_(next.words.data()), locations_(next.locations.data()), inWorld_(next.inWorld.data()),
-      direct_(next.direct.data()), indirect_(next.indirect.empty() ? nullptr : next.indirect.data()), places_(next.places.data()),
-      flags_(next.flags.data()), notes_(next.notes.data()), motions_(frame.wantsMotions ? frame.motions.data() : nullptr),
-      verdicts_(frame.verdicts.data()), hidden_(frame.hidden.data()) {}
+      oldIndirect_(previous.indirect.empty() ? nullptr : previous.indirect.data()),
+      oldNotes_(previous.notes.data()),
+      oldFlags_(previous.flags.data()),
+      oldPlaces_(previous.places.data()),
+      newPlaces_(frame.reprojected.places.data()),
+      first_(next.first.data()),
+      words_(next.words.data()),
+      locations_(next.locations.data()),
+      inWorld_(next.inWorld.data()),
+      direct_(next.direct.data()),
+      indirect_(next.indirect.empty() ? nullptr : next.indirect.data()),
+      places_(next.places.data()),
+      flags_(next.flags.data()),
+      notes_(next.notes.data()),
+      motions_(frame.wantsMotions ? frame.motions.data() : nullptr),
+      verdicts_(frame.verdicts.data()),
+      hidden_(frame.hidden.data()) {}
 
 void SampleGatherer::prefetch(uint32_t pixel, uint32_t count) const {
     const uint32_t last = pixel + count - 1;
@@ -106,7 +123,8 @@ void SampleGatherer::gather(uint32_t pixel, uint32_t count) const {
             continue;
         }
         uint32_t next = begin;
-        for (; next < end && (changes_[next].added | changes_[next].removed) == 0; ++next) words_[next] = subpixel::occupied(reprojectedWords_[next]);
+        for (; next < end && (changes_[next].added | changes_[next].removed) == 0; ++next)
+            words_[next] = subpixel::occupied(reprojectedWords_[next]);
         const uint32_t* source = sources_ + reprojectedFirst_[begin];
         keep(source, first_[begin], first_[next] - first_[begin]);
         begin = next;
@@ -128,8 +146,8 @@ void SampleGatherer::gatherChanged(uint32_t pixel) const {
     }
 }
 
-/// Samples of the frame before, which follow each other in this one. A loop for each thing that is known of them: in one for
-/// all every pointer would be read again after each byte that is written, for it may lie anywhere.
+/// Samples of the frame before, which follow each other in this one. A loop for each thing that is known of them: in
+/// one for all every pointer would be read again after each byte that is written, for it may lie anywhere.
 void SampleGatherer::keep(const uint32_t* sources, size_t begin, size_t count) const {
     copyFrom(oldLocations_, sources, locations_ + begin, count);
     copyFrom(oldInWorld_, sources, inWorld_ + begin, count);
@@ -143,7 +161,8 @@ void SampleGatherer::keep(const uint32_t* sources, size_t begin, size_t count) c
         for (size_t k = 0; k < count; ++k) motions_[begin + k] = oldPlaces_[sources[k]] - newPlaces_[sources[k]];
     uint8_t* const flags = flags_ + begin;
     Verdict* const verdicts = verdicts_ + begin;
-    for (size_t k = 0; k < count; ++k) verdicts[k] = flags[k] & SampleSet::kOccluded ? Verdict::Occluded : Verdict::Visible;
+    for (size_t k = 0; k < count; ++k)
+        verdicts[k] = flags[k] & SampleSet::kOccluded ? Verdict::Occluded : Verdict::Visible;
     for (size_t k = 0; k < count; ++k) flags[k] &= static_cast<uint8_t>(~SampleSet::kOccluded);
     std::fill_n(hidden_ + begin, count, uint8_t{0});
 }

@@ -17,32 +17,35 @@ enum class Verdict : uint8_t {
 /// A frame's samples while they are worked on: beside their set what is not kept, a value a sample.
 struct SampleFrame {
     bool wantsMotions = false;
-    std::vector<Vec2> motions;       ///< previous minus current place, of visible samples; empty if not wanted
+    std::vector<Vec2> motions;  ///< previous minus current place, of visible samples; empty if not wanted
     std::vector<Verdict> verdicts;
-    std::vector<uint8_t> hidden;     ///< 1: plays no part in the image
-    std::vector<Vec3> colours;       ///< scene-linear; empty: the set's direct light is all
+    std::vector<uint8_t> hidden;  ///< 1: plays no part in the image
+    std::vector<Vec3> colours;    ///< scene-linear; empty: the set's direct light is all
 
     std::vector<PixelChange> changes;  ///< a pixel
     ReprojectedSamples reprojected;
     std::vector<uint32_t> chunkSums;  ///< of numberSamples()
     bool newOnly = false;             ///< nothing has changed: older samples keep their verdicts
 
-    static constexpr size_t kBytesASample = sizeof(Vec2) + sizeof(Verdict) + 1 + sizeof(Vec3) + ReprojectedSamples::kBytesASample;
+    static constexpr size_t kBytesASample =
+        sizeof(Vec2) + sizeof(Verdict) + 1 + sizeof(Vec3) + ReprojectedSamples::kBytesASample;
 
     bool isVerified(uint32_t i) const { return !newOnly || verdicts[i] == Verdict::New; }
     size_t bytes() const;
 };
 
-/// Makes room for the samples of the frame: those of the frame before that reprojection and analysis kept, and the new ones.
-/// Sets `first`. `withIndirect`: they gather indirect light. Throws Error(Resources) if they would pass the memory limit.
+/// Makes room for the samples of the frame: those of the frame before that reprojection and analysis kept, and the new
+/// ones. Sets `first`. `withIndirect`: they gather indirect light. Throws Error(Resources) if they would pass the
+/// memory limit.
 void numberSamples(SampleFrame& frame, bool withIndirect, SampleSet& next);
 
-/// Makes the samples of a frame, some pixels at a time: those of `previous` that stay, in their new places, and the new ones,
-/// whose location is still to be found.
+/// Makes the samples of a frame, some pixels at a time: those of `previous` that stay, in their new places, and the new
+/// ones, whose location is still to be found.
 class SampleGatherer {
 public:
     /// `frame`: numbered. `random` names the frame; `keepsDirect`: direct light is averaged.
-    SampleGatherer(const SampleSet& previous, const DensitySettings& settings, uint32_t random, bool keepsDirect, SampleFrame& frame, SampleSet& next);
+    SampleGatherer(const SampleSet& previous, const DensitySettings& settings, uint32_t random, bool keepsDirect,
+                   SampleFrame& frame, SampleSet& next);
     /// Asks memory for what gather() is going to need of neighbouring pixels of a row.
     void prefetch(uint32_t pixel, uint32_t count) const;
     /// The samples of neighbouring pixels of a row and their words, in which none is occluded yet.

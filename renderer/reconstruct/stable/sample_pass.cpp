@@ -10,17 +10,18 @@
 namespace lumi {
 namespace {
 
-// A block is as wide as at density 1 as many rays as the tracer keeps together allow: samples lie in rows, and memory is read
-// ahead.
+// A block is as wide as at density 1 as many rays as the tracer keeps together allow: samples lie in rows, and memory
+// is read ahead.
 constexpr int kRun = 16, kMostColumns = 16 * kRun, kRows = 4;
 static_assert(SampleBatch::kMost <= PathBatch::kMost);  // a judge is asked for all starts of a batch at once
-constexpr uint32_t kStream = 0x57ab1e00u;  ///< second word of the samples' keys
+constexpr uint32_t kStream = 0x57ab1e00u;               ///< second word of the samples' keys
 
 /// One block at a time, by one thread.
 class BlockTracer {
 public:
     /// `columns`: of a block.
-    BlockTracer(const SamplePass& pass, int columns, const SampleRays& rays, const SampleGatherer& gatherer, SampleBatch& batch, VerificationCounts& counts)
+    BlockTracer(const SamplePass& pass, int columns, const SampleRays& rays, const SampleGatherer& gatherer,
+                SampleBatch& batch, VerificationCounts& counts)
         : pass_(pass), columns_(columns), rays_(rays), gatherer_(gatherer), batch_(batch), counts_(counts) {}
 
     /// Pixels from `left` and `top` on; false if stopped.
@@ -29,7 +30,9 @@ public:
         const int right = std::min(left + columns_, extent.width), bottom = std::min(top + kRows, extent.height);
         for (int y = top; y < bottom; ++y)
             for (int x = left; x < right; x += kRun)
-                if (!addRun(static_cast<uint32_t>(y * extent.width + x), static_cast<uint32_t>(std::min(kRun, right - x)))) return false;
+                if (!addRun(static_cast<uint32_t>(y * extent.width + x),
+                            static_cast<uint32_t>(std::min(kRun, right - x))))
+                    return false;
         return trace();
     }
 
@@ -58,7 +61,9 @@ bool BlockTracer::addRun(uint32_t pixel, uint32_t count) {
     for (uint32_t p = 0; p < count && !dense; ++p) most = std::max(most, first[p + 1] - first[p]);
     const size_t lanes = dense ? first[count] - first[0] : most * static_cast<uint32_t>(kRun);
     const size_t samples = batch_.sampleCount + first[count] - first[0];
-    if ((std::max(batch_.startCount + lanes, samples) > SampleBatch::kMost || batch_.runCount == SampleBatch::kMost) && !trace()) return false;
+    if ((std::max(batch_.startCount + lanes, samples) > SampleBatch::kMost || batch_.runCount == SampleBatch::kMost) &&
+        !trace())
+        return false;
     const auto begin = static_cast<uint32_t>(batch_.sampleCount);
     const uint32_t ahead = pixel + 2 * kRun, pixels = static_cast<uint32_t>(pass_.next.words.size());
     if (ahead < pixels) gatherer_.prefetch(ahead, std::min<uint32_t>(kRun, pixels - ahead));
@@ -124,8 +129,9 @@ bool BlockTracer::trace() {
     SplitObserver splits(direct, share);
     PathObserver* const observers[] = {&judge, &splits};
     if (starts.empty()) judge.judge({}, {}, {});
-    else if (!pass_.context.tracer.tracePaths(starts, path, pass_.context.sampling.seed, {batch_.radiance, starts.size()},
-                                              std::span(observers, split ? 2 : 1), pass_.context.stop))
+    else if (!pass_.context.tracer.tracePaths(starts, path, pass_.context.sampling.seed,
+                                              {batch_.radiance, starts.size()}, std::span(observers, split ? 2 : 1),
+                                              pass_.context.stop))
         return false;
     keepLight(judge.anyHidden());
     batch_.clear();
@@ -176,21 +182,25 @@ void BlockTracer::addLight(size_t slot, uint32_t i, bool still) {
 
 bool traceSamples(const SamplePass& pass, VerificationCounts& counts) {
     const SampleRays rays(pass.context.camera);
-    const SampleGatherer gatherer(pass.previous, pass.density, pass.random, pass.averagesDirect(), pass.frame, pass.next);
+    const SampleGatherer gatherer(pass.previous, pass.density, pass.random, pass.averagesDirect(), pass.frame,
+                                  pass.next);
     const Extent2 extent = pass.next.extent;
     const int columns = (extent.width + kMostColumns - 1) / kMostColumns, rows = (extent.height + kRows - 1) / kRows;
     const int width = ((extent.width + columns - 1) / columns + kRun - 1) / kRun * kRun;  // of a block
     std::atomic<bool> whole{true};
     std::atomic<uint64_t> flown{0}, lanes{0};
-    parallelFor(static_cast<int64_t>(columns) * rows, [&](int64_t block) {
-        std::unique_ptr<SampleBatch> batch = pass.spare.take();
-        batch->clear();
-        VerificationCounts here;
-        const int left = static_cast<int>(block % columns) * width, top = static_cast<int>(block / columns) * kRows;
-        if (!BlockTracer(pass, width, rays, gatherer, *batch, here).run(left, top)) whole = false;
-        flown += here.rays, lanes += here.lanes;
-        pass.spare.giveBack(std::move(batch));
-    }, pass.context.stop);
+    parallelFor(
+        static_cast<int64_t>(columns) * rows,
+        [&](int64_t block) {
+            std::unique_ptr<SampleBatch> batch = pass.spare.take();
+            batch->clear();
+            VerificationCounts here;
+            const int left = static_cast<int>(block % columns) * width, top = static_cast<int>(block / columns) * kRows;
+            if (!BlockTracer(pass, width, rays, gatherer, *batch, here).run(left, top)) whole = false;
+            flown += here.rays, lanes += here.lanes;
+            pass.spare.giveBack(std::move(batch));
+        },
+        pass.context.stop);
     counts = {flown, lanes};
     return whole && !pass.context.stop.stop_requested();
 }

@@ -30,8 +30,8 @@ struct VerificationCounts {
 };
 
 /// Makes, verifies and shades all samples [DalCorso17, sec. 4.3], block of pixels after block: the ray that verifies a
-/// sample is the first of the path that shades it, and a sample passes memory once. Blocks are worked on in any order and
-/// change nothing in each other. Returns false if stopped.
+/// sample is the first of the path that shades it, and a sample passes memory once. Blocks are worked on in any order
+/// and change nothing in each other. Returns false if stopped.
 bool traceSamples(const SamplePass& pass, VerificationCounts& counts);
 
 }  // namespace lumi

@@ -3,7 +3,10 @@
 namespace lumi {
 
 SampleRays::SampleRays(const CameraPose& camera)
-    : camera_(camera), position_(camera.position()), forward_(camera.forward()), pixelSize_(camera.pixelSize()),
+    : camera_(camera),
+      position_(camera.position()),
+      forward_(camera.forward()),
+      pixelSize_(camera.pixelSize()),
       perspective_(camera.projection == Projection::Perspective) {
     camera_.aperture = 0;
 }

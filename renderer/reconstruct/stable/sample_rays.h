@@ -11,11 +11,13 @@ class SampleRays {
 public:
     explicit SampleRays(const CameraPose& camera);
 
-    /// The ray that goes to a sample whose location is known, or through the place of a new one, and its footprint. Returns
-    /// the sample's distance, infinite for new ones and the sky. `inWorld`: position or direction; not read for new ones.
+    /// The ray that goes to a sample whose location is known, or through the place of a new one, and its footprint.
+    /// Returns the sample's distance, infinite for new ones and the sky. `inWorld`: position or direction; not read for
+    /// new ones.
     float aim(const SampleLocation& location, Vec2 place, const Vec3& inWorld, PathStart& start) const {
         if (location.isNew() || location.isSky() || !perspective_) return aimThrough(location, place, inWorld, start);
-        // through() by way of the sample itself instead of its place. Member by member: a copy would wait for its parts.
+        // through() by way of the sample itself instead of its place. Member by member: a copy would wait for its
+        // parts.
         const Vec3 along = inWorld - position_;
         const float distance = glm::length(along);
         const Vec3 direction = distance > 0 ? along * (1 / distance) : forward_;

@@ -24,14 +24,18 @@ struct SampleLocation {
     bool isSky() const { return instance == kSky; }
     SurfacePoint point() const { return {instance, primitive, {u, v}, 0}; }
     Vec3 direction() const { return {std::bit_cast<float>(primitive), u, v}; }
-    static SampleLocation ofPoint(const SurfacePoint& p) { return {p.instance, p.primitive, p.barycentrics.x, p.barycentrics.y}; }
-    static SampleLocation ofSky(const Vec3& direction) { return {kSky, std::bit_cast<uint32_t>(direction.x), direction.y, direction.z}; }
+    static SampleLocation ofPoint(const SurfacePoint& p) {
+        return {p.instance, p.primitive, p.barycentrics.x, p.barycentrics.y};
+    }
+    static SampleLocation ofSky(const Vec3& direction) {
+        return {kSky, std::bit_cast<uint32_t>(direction.x), direction.y, direction.z};
+    }
 };
 static_assert(sizeof(SampleLocation) == 16);
 
 /// What is known of a sample beside its place and its light.
 struct SampleNote {
-    uint32_t name = 0;  ///< of its random numbers
+    uint32_t name = 0;                            ///< of its random numbers
     uint16_t directCount = 0, indirectCount = 0;  ///< paths in its light; they stay at 65535
     uint16_t age = 0;                             ///< frames since it was traced, at most 65535
     uint16_t pathsDrawn = 0;                      ///< of its sequence of random numbers, modulo 65536
@@ -44,10 +48,10 @@ static_assert(sizeof(SampleNote) == 12);
 /// known of a sample is a vector of its own, so that a step reads nothing else.
 ///
 /// Bytes a pixel: 4 (word) + 4 (first) and 73 for each sample: 16 (location), 12 (in the world), 8 (place), 1 (flags),
-/// 12 (note), 12 (direct light), 12 (indirect light; only where paths are longer than one surface). At 1.25 samples a pixel that is
-/// 99, and three such sets are held (StableModule::byteCount() has the sum); the paper's buffers have 648 whatever the
-/// number, a set with all 16 would have 1176. Light is the wide form of the paper's 8 bytes, which hold no HDR colour, no
-/// indirect light and no count (sec. 6.1 adds those without saying where they are kept).
+/// 12 (note), 12 (direct light), 12 (indirect light; only where paths are longer than one surface). At 1.25 samples a
+/// pixel that is 99, and three such sets are held (StableModule::byteCount() has the sum); the paper's buffers have 648
+/// whatever the number, a set with all 16 would have 1176. Light is the wide form of the paper's 8 bytes, which hold no
+/// HDR colour, no indirect light and no count (sec. 6.1 adds those without saying where they are kept).
 struct SampleSet {
     static constexpr uint8_t kOccluded = 1, kSky = 2, kOnLight = 4;  ///< flags; the last: on the body of a light
 
@@ -55,12 +59,14 @@ struct SampleSet {
     std::vector<uint32_t> words;  ///< a pixel
     std::vector<uint32_t> first;  ///< index of each pixel's first sample, and one more: the number of samples
     std::vector<SampleLocation> locations;
-    std::vector<Vec3> inWorld;  ///< position, metres, or unit direction into the sky; not a number for samples that are evicted
-    std::vector<Vec2> places;   ///< on the screen, continuous pixels
+    std::vector<Vec3>
+        inWorld;  ///< position, metres, or unit direction into the sky; not a number for samples that are evicted
+    std::vector<Vec2> places;  ///< on the screen, continuous pixels
     std::vector<uint8_t> flags;
     std::vector<SampleNote> notes;
-    std::vector<Vec3> direct;    ///< scene-linear: emission and light that met one surface, this frame's or its mean since nothing moves
-    std::vector<Vec3> indirect;  ///< running average; empty: paths ended at the first surface
+    std::vector<Vec3>
+        direct;  ///< scene-linear: emission and light that met one surface, this frame's or its mean since nothing moves
+    std::vector<Vec3> indirect;        ///< running average; empty: paths ended at the first surface
     std::weak_ptr<const Scene> scene;  ///< that positions are of
 
     size_t size() const { return locations.size(); }
@@ -72,8 +78,8 @@ struct SampleSet {
     }
     /// That it holds.
     size_t bytes() const {
-        return heldBytes(words) + heldBytes(first) + heldBytes(locations) + heldBytes(inWorld) + heldBytes(places) + heldBytes(flags) +
-               heldBytes(notes) + heldBytes(direct) + heldBytes(indirect);
+        return heldBytes(words) + heldBytes(first) + heldBytes(locations) + heldBytes(inWorld) + heldBytes(places) +
+               heldBytes(flags) + heldBytes(notes) + heldBytes(direct) + heldBytes(indirect);
     }
     static constexpr size_t bytesASample(bool withIndirect) {
         return sizeof(SampleLocation) + sizeof(Vec2) + 1 + sizeof(SampleNote) + sizeof(Vec3) * (withIndirect ? 3 : 2);

@@ -12,7 +12,9 @@ namespace lumi {
 namespace {
 
 /// Names the frame where random numbers are drawn.
-uint32_t randomOf(const FrameContext& context) { return hashCombine(static_cast<uint32_t>(context.frame), context.sampling.seed); }
+uint32_t randomOf(const FrameContext& context) {
+    return hashCombine(static_cast<uint32_t>(context.frame), context.sampling.seed);
+}
 
 }  // namespace
 
@@ -27,12 +29,13 @@ void StableModule::describe(ParameterVisitor& v) {
 }
 
 void StableModule::resize(Extent2 extent) {
-    // Three frames of samples and what works on them. A quarter more than the target are held, most of them occluded; room is
-    // made for an eighth more.
+    // Three frames of samples and what works on them. A quarter more than the target are held, most of them occluded;
+    // room is made for an eighth more.
     constexpr uint64_t kBytesAPixel = 110;
     constexpr uint64_t kBytesASample = 3 * SampleSet::bytesASample(true) + SampleFrame::kBytesASample;
     const auto samples = static_cast<uint64_t>(1.125 * 1.25 * density_.density * static_cast<double>(extent.area()));
-    checkMemory("the samples of stable ray tracing", kBytesAPixel * static_cast<uint64_t>(extent.area()) + kBytesASample * samples);
+    checkMemory("the samples of stable ray tracing",
+                kBytesAPixel * static_cast<uint64_t>(extent.area()) + kBytesASample * samples);
     extent_ = extent;
     forget();
 }
@@ -108,15 +111,18 @@ bool StableModule::placeSamples(const FrameContext& context, const SampleSet& pr
     return true;
 }
 
-bool StableModule::trace(const FrameContext& context, const SampleSet& previous, const GatheringState& light, SampleSet& samples,
-                         VerificationCounts& counts) {
+bool StableModule::trace(const FrameContext& context, const SampleSet& previous, const GatheringState& light,
+                         SampleSet& samples, VerificationCounts& counts) {
     const auto measured = context.timer.measure("verification/shading");
-    return traceSamples({context, previous, density_, verification_, gathering_, light, randomOf(context), frame_, samples, spare_}, counts);
+    return traceSamples(
+        {context, previous, density_, verification_, gathering_, light, randomOf(context), frame_, samples, spare_},
+        counts);
 }
 
 bool StableModule::reconstruct(const FrameContext& context, const SampleSet& samples, Image& out) {
     const auto measured = context.timer.measure("reconstruction");
-    if (reconstructScattered({extent_, samples.first, samples.places, coloursOf(samples), frame_.hidden}, scattered_, out, weights_, context.stop) < 0)
+    if (reconstructScattered({extent_, samples.first, samples.places, coloursOf(samples), frame_.hidden}, scattered_,
+                             out, weights_, context.stop) < 0)
         return false;
     if (motion_.extent() != extent_) motion_.reset(extent_, 2);
     if (frame_.wantsMotions) longestMotions(samples.first, frame_.motions, frame_.hidden, motion_);
@@ -130,7 +136,8 @@ std::span<const Vec3> StableModule::coloursOf(const SampleSet& samples) const {
 
 std::string StableModule::advice() const {
     if (density_.tolerance >= 0.5f) return "";
-    return "a density tolerance below 0.5 never settles: neighbouring pixels undo each other's changes, and samples do not live long";
+    return "a density tolerance below 0.5 never settles: neighbouring pixels undo each other's changes, and samples do "
+           "not live long";
 }
 
 const Image& StableModule::tap(const std::string& name) const {
@@ -144,10 +151,10 @@ Convergence StableModule::convergence() const {
 }
 
 size_t StableModule::byteCount() const {
-    // Not what is only for looking at: taps and the densities they show. Nor the threads' scratch: as in the tracer, it is
-    // small, and depends on their number.
-    return history_.byteCount([](const Kept& kept) { return kept.samples.bytes(); }) + frame_.bytes() + weights_.bytes() + motion_.bytes() +
-           temporal_.bytes();
+    // Not what is only for looking at: taps and the densities they show. Nor the threads' scratch: as in the tracer, it
+    // is small, and depends on their number.
+    return history_.byteCount([](const Kept& kept) { return kept.samples.bytes(); }) + frame_.bytes() +
+           weights_.bytes() + motion_.bytes() + temporal_.bytes();
 }
 
 }  // namespace lumi

@@ -46,7 +46,8 @@ float lanesOf(const SampleFrame& frame, const SampleSet& samples, VerificationSe
     // Bit k: the k-th sample of a pixel has a ray.
     const auto raysOf = [&](size_t p) {
         uint32_t rays = 0;
-        for (uint32_t i = samples.first[p]; i < samples.first[p + 1]; ++i) rays |= frame.isVerified(i) ? 1u << (i - samples.first[p]) : 0;
+        for (uint32_t i = samples.first[p]; i < samples.first[p + 1]; ++i)
+            rays |= frame.isVerified(i) ? 1u << (i - samples.first[p]) : 0;
         return rays;
     };
     if (batches == VerificationSettings::Batches::Dense) return static_cast<float>(std::popcount(raysOf(pixel)));
@@ -76,9 +77,11 @@ void drawBitmasks(const SampleSet& samples, Image* out) {
     parallelRanges(samples.extent.area(), kPixels, [&](int64_t begin, int64_t end) {
         for (int64_t pixel = begin; pixel < end; ++pixel) {
             const uint32_t word = samples.words[static_cast<size_t>(pixel)];
-            const uint32_t visible = subpixel::count(subpixel::visible(word)), occluded = subpixel::count(subpixel::occluded(word));
+            const uint32_t visible = subpixel::count(subpixel::visible(word)),
+                           occluded = subpixel::count(subpixel::occluded(word));
             const float values[] = {0.25f * static_cast<float>(occluded), 0, 0.25f * static_cast<float>(visible),
-                                    static_cast<float>(subpixel::occupied(word)), static_cast<float>(subpixel::occluded(word))};
+                                    static_cast<float>(subpixel::occupied(word)),
+                                    static_cast<float>(subpixel::occluded(word))};
             for (int c = 0; c < 5; ++c) out->plane(c).data[pixel] = values[c];
         }
     });
@@ -99,20 +102,76 @@ float holeCode(const SampleSet& samples, size_t pixel) {
 
 std::vector<Tap> stableTaps() {
     return {
-        {.name = "subpixels", .channels = "RGB", .colourMap = "none", .help = "The 4x4 sub-pixels of the pixels around the middle, each drawn as a pixel: visible samples blue, occluded red (fig. 6). Those of other pixels are seen in bitmasks, zoomed in"},
-        {.name = "bitmasks", .channels = "RGBXY", .colourMap = "none", .help = "Visible samples as blue, occluded and just evicted ones as red, four of them as full colour; zoomed in, the window shows each pixel's 4x4 sub-pixels (fig. 6). X and Y are the occupancy and the occlusion bits"},
-        {.name = "occupancy", .channels = "Y", .range = ValueRange{0, 65535}, .help = "The 16 occupancy bits as a number; bit b is sub-pixel b, in rows from the top left"},
-        {.name = "occlusion", .channels = "Y", .range = ValueRange{0, 65535}, .help = "The 16 occlusion bits as a number; those of samples that were just evicted are set too"},
-        {.name = "sampleCount", .channels = "Y", .unit = "samples", .range = ValueRange{0, 4}, .help = "Visible samples in the pixel"},
-        {.name = "density", .channels = "Y", .unit = "samples/px", .range = ValueRange{0, 4}, .help = "Local density d after reprojection: visible samples in the 2x2 pixels around (sec. 4.2)"},
-        {.name = "changes", .channels = "RGB", .colourMap = "none", .help = "Samples that the analysis added (green) and removed (red), as in fig. 4"},
-        {.name = "age", .channels = "Y", .unit = "frames", .range = ValueRange{0, 64}, .help = "Mean age of the pixel's visible samples"},
-        {.name = "holes", .channels = "Y", .range = ValueRange{0, 2}, .colourMap = "magma", .help = "1: no visible sample in the pixel; 2: nor in its 3x3 pixels. Where the filter has none in reach the pixel is the mean of those around it"},
-        {.name = "verdicts", .channels = "Y", .range = ValueRange{0, 5}, .colourMap = "turbo", .help = "The worst verdict on the pixel's samples: 0 none, 1 visible, 2 new, 3 occluded, 4 moved to what occludes it, 5 missed and evicted"},
-        {.name = "indirectCount", .channels = "Y", .unit = "paths", .range = ValueRange{0, 16}, .help = "Mean number of paths in the indirect light of the pixel's visible samples"},
-        {.name = "lanes", .channels = "Y", .unit = "rays", .range = ValueRange{0, 8}, .help = "Lanes of the packets of visibility rays that went to the pixel, idle ones included"},
-        {.name = "sampleMotion", .channels = "XY", .unit = "px", .colourMap = "motion", .help = "The longest motion among the pixel's visible samples, previous minus current place"},
-        {.name = "reconstructed", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "The image before temporal integration"}};
+        {.name = "subpixels",
+         .channels = "RGB",
+         .colourMap = "none",
+         .help = "The 4x4 sub-pixels of the pixels around the middle, each drawn as a pixel: visible samples blue, "
+                 "occluded red (fig. 6). Those of other pixels are seen in bitmasks, zoomed in"},
+        {.name = "bitmasks",
+         .channels = "RGBXY",
+         .colourMap = "none",
+         .help =
+             "Visible samples as blue, occluded and just evicted ones as red, four of them as full colour; zoomed in, "
+             "the window shows each pixel's 4x4 sub-pixels (fig. 6). X and Y are the occupancy and the occlusion bits"},
+        {.name = "occupancy",
+         .channels = "Y",
+         .range = ValueRange{0, 65535},
+         .help = "The 16 occupancy bits as a number; bit b is sub-pixel b, in rows from the top left"},
+        {.name = "occlusion",
+         .channels = "Y",
+         .range = ValueRange{0, 65535},
+         .help = "The 16 occlusion bits as a number; those of samples that were just evicted are set too"},
+        {.name = "sampleCount",
+         .channels = "Y",
+         .unit = "samples",
+         .range = ValueRange{0, 4},
+         .help = "Visible samples in the pixel"},
+        {.name = "density",
+         .channels = "Y",
+         .unit = "samples/px",
+         .range = ValueRange{0, 4},
+         .help = "Local density d after reprojection: visible samples in the 2x2 pixels around (sec. 4.2)"},
+        {.name = "changes",
+         .channels = "RGB",
+         .colourMap = "none",
+         .help = "Samples that the analysis added (green) and removed (red), as in fig. 4"},
+        {.name = "age",
+         .channels = "Y",
+         .unit = "frames",
+         .range = ValueRange{0, 64},
+         .help = "Mean age of the pixel's visible samples"},
+        {.name = "holes",
+         .channels = "Y",
+         .range = ValueRange{0, 2},
+         .colourMap = "magma",
+         .help = "1: no visible sample in the pixel; 2: nor in its 3x3 pixels. Where the filter has none in reach the "
+                 "pixel is the mean of those around it"},
+        {.name = "verdicts",
+         .channels = "Y",
+         .range = ValueRange{0, 5},
+         .colourMap = "turbo",
+         .help = "The worst verdict on the pixel's samples: 0 none, 1 visible, 2 new, 3 occluded, 4 moved to what "
+                 "occludes it, 5 missed and evicted"},
+        {.name = "indirectCount",
+         .channels = "Y",
+         .unit = "paths",
+         .range = ValueRange{0, 16},
+         .help = "Mean number of paths in the indirect light of the pixel's visible samples"},
+        {.name = "lanes",
+         .channels = "Y",
+         .unit = "rays",
+         .range = ValueRange{0, 8},
+         .help = "Lanes of the packets of visibility rays that went to the pixel, idle ones included"},
+        {.name = "sampleMotion",
+         .channels = "XY",
+         .unit = "px",
+         .colourMap = "motion",
+         .help = "The longest motion among the pixel's visible samples, previous minus current place"},
+        {.name = "reconstructed",
+         .channels = "RGB",
+         .unit = "W/(m^2 sr)",
+         .colourMap = "none",
+         .help = "The image before temporal integration"}};
 }
 
 void drawSubpixels(const SampleSet& samples, Image& out) {
@@ -124,9 +183,12 @@ void drawSubpixels(const SampleSet& samples, Image& out) {
     for (int y = 0; y < extent.height; ++y)
         for (int x = 0; x < extent.width; ++x) {
             const Pixel p{left + x / subpixel::kSide, top + y / subpixel::kSide};
-            const uint32_t word = samples.words[static_cast<size_t>(p.y) * static_cast<size_t>(extent.width) + static_cast<size_t>(p.x)];
+            const uint32_t word =
+                samples.words[static_cast<size_t>(p.y) * static_cast<size_t>(extent.width) + static_cast<size_t>(p.x)];
             const uint32_t bit = subpixel::bit(y % subpixel::kSide * subpixel::kSide + x % subpixel::kSide);
-            const Vec3 colour = subpixel::visible(word) & bit ? kVisible : subpixel::occupied(word) & bit ? kOccluded : kEmpty[(p.x + p.y) & 1];
+            const Vec3 colour = subpixel::visible(word) & bit    ? kVisible
+                                : subpixel::occupied(word) & bit ? kOccluded
+                                                                 : kEmpty[(p.x + p.y) & 1];
             for (int c = 0; c < 3; ++c) out.at(c, x, y) = colour[c];
         }
 }
@@ -135,16 +197,21 @@ void StableModule::keepTaps(const FrameContext& context, const SampleSet& sample
     if (context.wantedTaps.empty()) return;
     if (Image* out = taps_.target("subpixels")) drawSubpixels(samples, *out);
     drawBitmasks(samples, taps_.target("bitmasks"));
-    fill(taps_.target("occupancy"), extent_, [&](size_t p) { return static_cast<float>(subpixel::occupied(samples.words[p])); });
-    fill(taps_.target("occlusion"), extent_, [&](size_t p) { return static_cast<float>(subpixel::occluded(samples.words[p])); });
-    fill(taps_.target("sampleCount"), extent_, [&](size_t p) { return static_cast<float>(std::popcount(subpixel::visible(samples.words[p]))); });
+    fill(taps_.target("occupancy"), extent_,
+         [&](size_t p) { return static_cast<float>(subpixel::occupied(samples.words[p])); });
+    fill(taps_.target("occlusion"), extent_,
+         [&](size_t p) { return static_cast<float>(subpixel::occluded(samples.words[p])); });
+    fill(taps_.target("sampleCount"), extent_,
+         [&](size_t p) { return static_cast<float>(std::popcount(subpixel::visible(samples.words[p]))); });
     taps_.keep("density", localDensity_);
     drawChanges(frame_, extent_, taps_.target("changes"));
-    fill(taps_.target("age"), extent_, [&](size_t p) { return meanOfVisible(frame_, samples, p, [](const SampleNote& n) { return n.age; }); });
+    fill(taps_.target("age"), extent_,
+         [&](size_t p) { return meanOfVisible(frame_, samples, p, [](const SampleNote& n) { return n.age; }); });
     fill(taps_.target("holes"), extent_, [&](size_t p) { return holeCode(samples, p); });
     fill(taps_.target("verdicts"), extent_, [&](size_t p) { return verdictCode(frame_, samples, p); });
-    fill(taps_.target("indirectCount"), extent_,
-         [&](size_t p) { return meanOfVisible(frame_, samples, p, [](const SampleNote& n) { return n.indirectCount; }); });
+    fill(taps_.target("indirectCount"), extent_, [&](size_t p) {
+        return meanOfVisible(frame_, samples, p, [](const SampleNote& n) { return n.indirectCount; });
+    });
     fill(taps_.target("lanes"), extent_, [&](size_t p) { return lanesOf(frame_, samples, verification_.batches, p); });
     taps_.keep("sampleMotion", motion_);
 }
@@ -165,8 +232,11 @@ void StableModule::inspect(const FrameContext& context, const SampleSet& samples
                 const float weight = frame_.hidden[i] ? 0 : scatteredWeight(scattered_, off, coloursOf(samples)[i]);
                 sum += weight;
                 const char* kNames[] = {"new", "visible", "occluded", "moved to what occludes it", "missed"};
-                lineage_.rows.push_back({"reconstruction", {x, y}, weight,
-                                         std::string(kNames[static_cast<size_t>(frame_.verdicts[i])]) + ", age " + std::to_string(samples.notes[i].age)});
+                lineage_.rows.push_back({"reconstruction",
+                                         {x, y},
+                                         weight,
+                                         std::string(kNames[static_cast<size_t>(frame_.verdicts[i])]) + ", age " +
+                                             std::to_string(samples.notes[i].age)});
             }
         }
     for (Lineage::Row& row : lineage_.rows) row.weight = sum > 0 ? row.weight / sum : 0;

@@ -11,7 +11,8 @@ constexpr int64_t kPixels = 4096;
 
 void TemporalIntegration::describe(ParameterVisitor& v) {
     v.toggle("temporal", enabled_,
-             {.label = "Temporal integration", .help = "Blend the image with the frames before it, clipped to its neighbourhood's colours (sec. 6)"});
+             {.label = "Temporal integration",
+              .help = "Blend the image with the frames before it, clipped to its neighbourhood's colours (sec. 6)"});
     v.when(enabled_, [&] { settings_.describe(v); });
 }
 
@@ -29,19 +30,22 @@ bool TemporalIntegration::run(const FrameContext& context, const Image& motion, 
             length_.data()[i] = x * x + y * y;
         }
     });
-    return antialiasTemporally(TaaMotion{motion, length_}, settings_, image, step.previous, scratch_, step.next, image, context.stop);
+    return antialiasTemporally(TaaMotion{motion, length_}, settings_, image, step.previous, scratch_, step.next, image,
+                               context.stop);
 }
 
 size_t TemporalIntegration::bytes() const {
     return scratch_.bytes() + length_.bytes() + history_.byteCount([](const Image& image) { return image.bytes(); });
 }
 
-void longestMotions(std::span<const uint32_t> first, std::span<const Vec2> motions, std::span<const uint8_t> hidden, Image& out) {
+void longestMotions(std::span<const uint32_t> first, std::span<const Vec2> motions, std::span<const uint8_t> hidden,
+                    Image& out) {
     parallelRanges(out.extent().area(), kPixels, [&](int64_t begin, int64_t end) {
         for (auto pixel = static_cast<size_t>(begin); pixel < static_cast<size_t>(end); ++pixel) {
             Vec2 longest(0);
             for (uint32_t i = first[pixel]; i < first[pixel + 1]; ++i)
-                if ((hidden.empty() || !hidden[i]) && glm::dot(motions[i], motions[i]) > glm::dot(longest, longest)) longest = motions[i];
+                if ((hidden.empty() || !hidden[i]) && glm::dot(motions[i], motions[i]) > glm::dot(longest, longest))
+                    longest = motions[i];
             for (int c = 0; c < 2; ++c) out.plane(c).data[pixel] = longest[c];
         }
     });

@@ -5,9 +5,9 @@
 
 namespace lumi {
 
-/// Temporal integration with colour clamping of images that were made from samples [DalCorso17, sec. 6, after Patney16]:
-/// filter/taa.h along the samples' own motion, the longest of each 3 x 3 pixels (sec. 4.4). The parameter `temporal`
-/// switches it on.
+/// Temporal integration with colour clamping of images that were made from samples [DalCorso17, sec. 6, after
+/// Patney16]: filter/taa.h along the samples' own motion, the longest of each 3 x 3 pixels (sec. 4.4). The parameter
+/// `temporal` switches it on.
 class TemporalIntegration {
 public:
     explicit TemporalIntegration(float alpha) { settings_.alpha = alpha; }
@@ -28,6 +28,7 @@ private:
 
 /// The longest motion (previous minus current place) among each pixel's samples, X and Y; 0 where a pixel
 /// has none. `first` and `hidden` as in filter/scattered.h.
-void longestMotions(std::span<const uint32_t> first, std::span<const Vec2> motions, std::span<const uint8_t> hidden, Image& out);
+void longestMotions(std::span<const uint32_t> first, std::span<const Vec2> motions, std::span<const uint8_t> hidden,
+                    Image& out);
 
 }  // namespace lumi

@@ -12,20 +12,23 @@ bool isHidden(Verdict verdict) { return verdict == Verdict::Occluded || verdict 
 }  // namespace
 
 void VerificationSettings::describe(ParameterVisitor& v) {
-    v.number("epsilon", epsilon,
-             {.label = "Verification tolerance",
-              .min = 1e-6,
-              .max = 0.5,
-              .scale = Scale::Log,
-              .help = "How far from a sample its visibility ray may end, in parts of the distance (epsilon of sec. 4.3)"});
+    v.number(
+        "epsilon", epsilon,
+        {.label = "Verification tolerance",
+         .min = 1e-6,
+         .max = 0.5,
+         .scale = Scale::Log,
+         .help = "How far from a sample its visibility ray may end, in parts of the distance (epsilon of sec. 4.3)"});
     v.choice("batches", batches,
              {.label = "Ray batches",
               .options = {"dense", "per-pixel"},
-              .help = "Which visibility rays are traced together: all samples of a block of pixels in one list without gaps, or the k-th samples of "
+              .help = "Which visibility rays are traced together: all samples of a block of pixels in one list without "
+                      "gaps, or the k-th samples of "
                       "16 pixels with idle lanes as in the paper, whose sec. 7 leaves the balancing open"});
 }
 
-bool findsSample(const Tracer& tracer, const SampleLocation& location, const Vec3& direction, const Hit& hit, float distance, float epsilon) {
+bool findsSample(const Tracer& tracer, const SampleLocation& location, const Vec3& direction, const Hit& hit,
+                 float distance, float epsilon) {
     if (location.isSky() || !hit.valid()) return location.isSky() && !hit.valid();
     if (hit.point.instance != location.instance || hit.point.primitive != location.primitive)
         return hit.distance >= distance * (1 - epsilon) && hit.distance <= distance * (1 + epsilon);
@@ -46,7 +49,8 @@ void SampleJudge::judge(std::span<const PathStart> starts, std::span<Hit> hits, 
     }
     if (!anyHidden_) return;
     for (const SampleBatch::Run& run : std::span(batch_.runs, batch_.runCount))
-        for (uint32_t k = 0; k < run.count; ++k) settle(run.pixel + k, run.slot + set_.first[run.pixel + k] - set_.first[run.pixel], hits);
+        for (uint32_t k = 0; k < run.count; ++k)
+            settle(run.pixel + k, run.slot + set_.first[run.pixel + k] - set_.first[run.pixel], hits);
     for (size_t k = 0; k < starts.size(); ++k)
         if (goesOn[k]) goesOn[k] = !frame_.hidden[batch_.samples[starts[k].slot]];
 }
@@ -89,8 +93,8 @@ void SampleJudge::locate(const Ray& ray, const Hit& hit, uint32_t i) {
     frame_.motions[i] = Vec2(surfaceMotion(camera, previous, position, context_.tracer.previousPosition(hit.point)));
 }
 
-/// The pixel's word and what the image may show, from the verdicts. The last sample of a pixel moves to what occludes it
-/// [DalCorso17, sec. 4.3]: the first of those that are occluded, if none is visible.
+/// The pixel's word and what the image may show, from the verdicts. The last sample of a pixel moves to what occludes
+/// it [DalCorso17, sec. 4.3]: the first of those that are occluded, if none is visible.
 void SampleJudge::settle(uint32_t pixel, uint32_t slot, std::span<Hit> hits) {
     const uint32_t begin = set_.first[pixel], end = set_.first[pixel + 1];
     bool any = false;
@@ -128,7 +132,8 @@ void SampleJudge::replace(uint32_t i, const Hit& blocker) {
     set_.direct[i] = Vec3(0);
     if (!set_.indirect.empty()) set_.indirect[i] = Vec3(0);
     if (!frame_.wantsMotions) return;
-    frame_.motions[i] = Vec2(surfaceMotion(context_.camera, context_.previousCamera, position, context_.tracer.previousPosition(blocker.point)));
+    frame_.motions[i] = Vec2(surfaceMotion(context_.camera, context_.previousCamera, position,
+                                           context_.tracer.previousPosition(blocker.point)));
 }
 
 }  // namespace lumi

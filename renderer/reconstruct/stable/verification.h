@@ -6,9 +6,9 @@ namespace lumi {
 
 /// How samples are verified [DalCorso17, sec. 4.3].
 struct VerificationSettings {
-    /// What rays are traced together. Dense: the samples of a block of pixels in one list without gaps, block after block, the
-    /// load balancing that sec. 7 of the paper expects a gain from. PerPixel: as the paper, each pixel goes through its own
-    /// samples; packets are the k-th samples of 16 pixels and have idle lanes where a pixel has fewer.
+    /// What rays are traced together. Dense: the samples of a block of pixels in one list without gaps, block after
+    /// block, the load balancing that sec. 7 of the paper expects a gain from. PerPixel: as the paper, each pixel goes
+    /// through its own samples; packets are the k-th samples of 16 pixels and have idle lanes where a pixel has fewer.
     enum class Batches { Dense, PerPixel };
 
     static constexpr float kEpsilon = 1e-4f;
@@ -26,8 +26,10 @@ struct VerificationSettings {
 /// The paths of visible samples go on from their locations.
 class SampleJudge : public FirstHitJudge {
 public:
-    /// `anyHidden`: samples that keep their verdict are hidden. As they come none is marked so, nor occluded in the words.
-    SampleJudge(const FrameContext& context, float epsilon, bool anyHidden, const SampleBatch& batch, SampleFrame& frame, SampleSet& set)
+    /// `anyHidden`: samples that keep their verdict are hidden. As they come none is marked so, nor occluded in the
+    /// words.
+    SampleJudge(const FrameContext& context, float epsilon, bool anyHidden, const SampleBatch& batch,
+                SampleFrame& frame, SampleSet& set)
         : context_(context), epsilon_(epsilon), anyHidden_(anyHidden), batch_(batch), frame_(frame), set_(set) {}
     void nameRays(std::span<const PathStart> starts, std::span<uint32_t> ids) const override;
     void judge(std::span<const PathStart> starts, std::span<Hit> hits, std::span<uint8_t> goesOn) override;
@@ -50,8 +52,9 @@ private:
 };
 
 /// Does `hit` of the ray along unit `direction` to a sample find it? `distance` is that of the sample. A hit on its
-/// triangle does, wherever the ray meets it; on any other surface it may be off by `epsilon` of the distance. The bodies of
-/// lights are convex: of the points of one that lie behind each other the ray meets that which faces it.
-bool findsSample(const Tracer& tracer, const SampleLocation& location, const Vec3& direction, const Hit& hit, float distance, float epsilon);
+/// triangle does, wherever the ray meets it; on any other surface it may be off by `epsilon` of the distance. The
+/// bodies of lights are convex: of the points of one that lie behind each other the ray meets that which faces it.
+bool findsSample(const Tracer& tracer, const SampleLocation& location, const Vec3& direction, const Hit& hit,
+                 float distance, float epsilon);
 
 }  // namespace lumi

@@ -27,9 +27,9 @@ public:
         const CameraPose &camera = context_.camera, &previous = context_.previousCamera;
         for (size_t i = 0; i < batch.slots.size(); ++i) {
             const PathVertex& v = batch.vertices[i];
-            motions_[samples_[batch.slots[i]]] =
-                Vec2(v.point.valid() ? surfaceMotion(camera, previous, v.position, context_.tracer.previousPosition(v.point))
-                                     : skyMotion(camera, previous, -v.wo));
+            motions_[samples_[batch.slots[i]]] = Vec2(
+                v.point.valid() ? surfaceMotion(camera, previous, v.position, context_.tracer.previousPosition(v.point))
+                                : skyMotion(camera, previous, -v.wo));
         }
     }
 
@@ -42,11 +42,21 @@ private:
 }  // namespace
 
 SupersamplingModule::SupersamplingModule()
-    : taps_({{.name = "reconstructed", .channels = "RGB", .unit = "W/(m^2 sr)", .colourMap = "none", .help = "The image before temporal integration"},
-             {.name = "sampleMotion", .channels = "XY", .unit = "px", .colourMap = "motion", .help = "The longest motion among the pixel's samples, previous minus current place; 0 without temporal integration"}}) {}
+    : taps_({{.name = "reconstructed",
+              .channels = "RGB",
+              .unit = "W/(m^2 sr)",
+              .colourMap = "none",
+              .help = "The image before temporal integration"},
+             {.name = "sampleMotion",
+              .channels = "XY",
+              .unit = "px",
+              .colourMap = "motion",
+              .help = "The longest motion among the pixel's samples, previous minus current place; 0 without temporal "
+                      "integration"}}) {}
 
 void SupersamplingModule::describe(ParameterVisitor& v) {
-    v.integer("spp", samplesPerPixel_, {.label = "Samples", .min = 1, .max = kMost, .unit = "spp", .help = "Samples a pixel and frame"});
+    v.integer("spp", samplesPerPixel_,
+              {.label = "Samples", .min = 1, .max = kMost, .unit = "spp", .help = "Samples a pixel and frame"});
     scattered_.describe(v);
     temporal_.describe(v);
 }
@@ -86,14 +96,18 @@ void SupersamplingModule::listSamples() {
 
 bool SupersamplingModule::trace(const FrameContext& context) {
     listSamples();
-    const Vec2 jitter = temporal_.enabled() ? frameJitter(static_cast<uint64_t>(context.frame), context.sampling.seed) : Vec2(0);
+    const Vec2 jitter =
+        temporal_.enabled() ? frameJitter(static_cast<uint64_t>(context.frame), context.sampling.seed) : Vec2(0);
     Vec2 within[kMost];
     for (int s = 0; s < samplesPerPixel_; ++s) within[s] = placeInPixel(s, samplesPerPixel_, jitter);
     const std::span<const uint32_t> list = list_.items();
     constexpr int64_t kPaths = 1024;
-    parallelRanges(static_cast<int64_t>(list.size()), kPaths, [&](int64_t begin, int64_t end) {
-        traceRun(context, list.subspan(static_cast<size_t>(begin), static_cast<size_t>(end - begin)), within);
-    }, context.stop);
+    parallelRanges(
+        static_cast<int64_t>(list.size()), kPaths,
+        [&](int64_t begin, int64_t end) {
+            traceRun(context, list.subspan(static_cast<size_t>(begin), static_cast<size_t>(end - begin)), within);
+        },
+        context.stop);
     return !context.stop.stop_requested();
 }
 
@@ -112,8 +126,9 @@ void SupersamplingModule::traceRun(const FrameContext& context, std::span<const 
     MotionObserver observer(context, samples, motions_);
     PathObserver* const observers[] = {&observer};
     const bool wantsMotion = temporal_.enabled();
-    context.tracer.tracePaths(starts, context.sampling.path, context.sampling.seed, radiance,
-                              wantsMotion ? std::span<PathObserver* const>(observers) : std::span<PathObserver* const>(), context.stop);
+    context.tracer.tracePaths(
+        starts, context.sampling.path, context.sampling.seed, radiance,
+        wantsMotion ? std::span<PathObserver* const>(observers) : std::span<PathObserver* const>(), context.stop);
     for (size_t k = 0; k < samples.size(); ++k) colours_[samples[k]] = radiance[k];
 }
 
@@ -127,7 +142,8 @@ RunResult SupersamplingModule::run(const FrameContext& context, Image& out) {
     }
     {
         const auto measured = context.timer.measure("reconstruction");
-        if (reconstructScattered({extent_, first_, places_, colours_, {}}, scattered_, out, weights_, context.stop) < 0) return RunResult::Stopped;
+        if (reconstructScattered({extent_, first_, places_, colours_, {}}, scattered_, out, weights_, context.stop) < 0)
+            return RunResult::Stopped;
         if (motion_.extent() != extent_) motion_.reset(extent_, 2);
         if (temporal_.enabled()) longestMotions(first_, motions_, {}, motion_);
         else if (taps_.wants("sampleMotion")) motion_.fill(0);
@@ -146,8 +162,8 @@ const Image& SupersamplingModule::tap(const std::string& name) const {
 }
 
 size_t SupersamplingModule::byteCount() const {
-    return first_.size() * 4 + list_.bytes() + places_.size() * (2 * sizeof(Vec2) + sizeof(Vec3)) + weights_.bytes() + motion_.bytes() + temporal_.bytes() +
-           taps_.bytes();
+    return first_.size() * 4 + list_.bytes() + places_.size() * (2 * sizeof(Vec2) + sizeof(Vec3)) + weights_.bytes() +
+           motion_.bytes() + temporal_.bytes() + taps_.bytes();
 }
 
 }  // namespace lumi

@@ -6,14 +6,15 @@
 
 namespace lumi {
 
-/// Standard supersampling, what stable ray tracing is compared with [DalCorso17, sec. 6]: every frame traces 1 to 6 samples
-/// at fixed places of each pixel and reconstructs as `stable` does. With temporal integration the places are jittered
-/// from frame to frame, which makes it full temporal antialiasing. It reads no signals: it places its own rays, from a
-/// pinhole and at the shutter's opening, as `stable` does.
+/// Standard supersampling, what stable ray tracing is compared with [DalCorso17, sec. 6]: every frame traces 1 to 6
+/// samples at fixed places of each pixel and reconstructs as `stable` does. With temporal integration the places are
+/// jittered from frame to frame, which makes it full temporal antialiasing. It reads no signals: it places its own
+/// rays, from a pinhole and at the shutter's opening, as `stable` does.
 ///
-/// Differs from the paper, which does not say where the samples are: they form a rook pattern, one in each row and column
-/// of spp x spp cells, the same in all pixels; a single one is in the middle. Temporal integration clips as filter/taa.h
-/// does. Both filter tone-mapped colours (`tone-mapped`), which is a bias against references that are linear.
+/// Differs from the paper, which does not say where the samples are: they form a rook pattern, one in each row and
+/// column of spp x spp cells, the same in all pixels; a single one is in the middle. Temporal integration clips as
+/// filter/taa.h does. Both filter tone-mapped colours (`tone-mapped`), which is a bias against references that are
+/// linear.
 class SupersamplingModule : public Module {
 public:
     SupersamplingModule();
@@ -38,9 +39,9 @@ private:
     int samplesPerPixel_ = 1;
     ScatteredSettings scattered_;
     TemporalIntegration temporal_{0.1f};
-    int listedSamples_ = 0;      ///< that first_ and list_ are for; 0: none
+    int listedSamples_ = 0;  ///< that first_ and list_ are for; 0: none
     std::vector<uint32_t> first_;
-    TileList list_;              ///< samples in the order in which they are traced
+    TileList list_;  ///< samples in the order in which they are traced
     std::vector<Vec2> places_, motions_;
     std::vector<Vec3> colours_;
     Image weights_, motion_;

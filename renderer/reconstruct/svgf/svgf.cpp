@@ -49,14 +49,16 @@ bool SvgfModule::integrate(const FrameContext& context, const Step& step) {
     if (!estimateLoss(context, loss)) return false;
     const auto measured = context.timer.measure("temporal filter");
     for (Illumination& planes : input_) planes.reset(extent());
-    if (!filterTemporally(context.signals, parameters_.temporal, {&frame().direct, &frame().indirect}, step.previous, step.next,
-                          context.stop, options))
+    if (!filterTemporally(context.signals, parameters_.temporal, {&frame().direct, &frame().indirect}, step.previous,
+                          step.next, context.stop, options))
         return false;
     keepIntegrated(captured(), step.next);
     if (Lineage* lineage = inspected()) {
-        if (loss.empty()) addHistoryRows(*lineage, context.signals, step.previous, parameters_.temporal, options.dropped);
+        if (loss.empty())
+            addHistoryRows(*lineage, context.signals, step.previous, parameters_.temporal, options.dropped);
         for (size_t c = 0; c < loss.size(); ++c)
-            addHistoryRows(*lineage, context.signals, step.previous, parameters_.temporal, options.dropped, c == 0 ? "direct, history" : "indirect, history", loss[c]);
+            addHistoryRows(*lineage, context.signals, step.previous, parameters_.temporal, options.dropped,
+                           c == 0 ? "direct, history" : "indirect, history", loss[c]);
     }
     // The integrated colour moves on; handOver() gives the history what it is to keep.
     for (size_t c = 0; c < kComponents; ++c) std::swap(input_[c].rgb, step.next.components[c].colour);
@@ -79,7 +81,8 @@ bool SvgfModule::estimateVariance(const FrameContext& context, const TemporalHis
         const TemporalComponent& component = integrated.components[c];
         planes.push_back({component.mean.data(), component.sampleVariance.data(), input_[c].sampleVariance.data()});
     }
-    return estimateVarianceSpatially(guide, atrousSettings().edges, integrated.length.data(), least, planes, context.stop);
+    return estimateVarianceSpatially(guide, atrousSettings().edges, integrated.length.data(), least, planes,
+                                     context.stop);
 }
 
 const SvgfModule::Levels* SvgfModule::filterSpatially(const FrameContext& context) {
@@ -92,9 +95,10 @@ const SvgfModule::Levels* SvgfModule::filterSpatially(const FrameContext& contex
         if (level > 0 && level <= parameters_.levels) {
             Levels& to = level == feedbackLevel() ? feedback_ : levels_[level % 2];
             for (size_t c = 0; c < kComponents && inspected(); ++c)
-                addAtrousRows(*inspected(), (c == 0 ? "direct, level " : "indirect, level ") + std::to_string(level), guide, settings,
-                              (*from)[c], 1 << (level - 1));
-            if (!atrousLevel(guide, settings, 1 << (level - 1), {&(*from)[0], &(*from)[1]}, {&to[0], &to[1]}, context.stop))
+                addAtrousRows(*inspected(), (c == 0 ? "direct, level " : "indirect, level ") + std::to_string(level),
+                              guide, settings, (*from)[c], 1 << (level - 1));
+            if (!atrousLevel(guide, settings, 1 << (level - 1), {&(*from)[0], &(*from)[1]}, {&to[0], &to[1]},
+                             context.stop))
                 return nullptr;
             from = &to;
         }

@@ -14,18 +14,44 @@ constexpr const char* kRadiance = "W/(m^2 sr)";
 std::vector<Tap> svgfTaps(int maxLevels) {
     std::vector<Tap> taps = temporalTaps();
     const Tap fixed[] = {
-        {.name = "demodulatedDirect", .channels = "RGB", .colourMap = "none", .help = "Direct illumination of this frame, divided by the albedo"},
-        {.name = "demodulatedIndirect", .channels = "RGB", .colourMap = "none", .help = "Indirect illumination of this frame, divided by the albedo"},
-        {.name = "demodulationAlbedo", .channels = "RGB", .colourMap = "none", .help = "What illumination is divided by: the lobes' albedos together"},
-        {.name = "depthWeight", .channels = "Y", .range = ValueRange{0, 1}, .colourMap = "gray", .help = "w_z (eq. 3), mean of the eight neighbours at the first level"},
-        {.name = "normalWeight", .channels = "Y", .range = ValueRange{0, 1}, .colourMap = "gray", .help = "w_n (eq. 4), mean of the eight neighbours at the first level"},
+        {.name = "demodulatedDirect",
+         .channels = "RGB",
+         .colourMap = "none",
+         .help = "Direct illumination of this frame, divided by the albedo"},
+        {.name = "demodulatedIndirect",
+         .channels = "RGB",
+         .colourMap = "none",
+         .help = "Indirect illumination of this frame, divided by the albedo"},
+        {.name = "demodulationAlbedo",
+         .channels = "RGB",
+         .colourMap = "none",
+         .help = "What illumination is divided by: the lobes' albedos together"},
+        {.name = "depthWeight",
+         .channels = "Y",
+         .range = ValueRange{0, 1},
+         .colourMap = "gray",
+         .help = "w_z (eq. 3), mean of the eight neighbours at the first level"},
+        {.name = "normalWeight",
+         .channels = "Y",
+         .range = ValueRange{0, 1},
+         .colourMap = "gray",
+         .help = "w_n (eq. 4), mean of the eight neighbours at the first level"},
     };
     taps.insert(taps.end(), std::begin(fixed), std::end(fixed));
     for (const char* component : {"direct", "indirect"}) {
         const std::string name = component;
-        taps.push_back({.name = name + "LuminanceWeight", .channels = "Y", .range = ValueRange{0, 1}, .colourMap = "gray", .help = "w_l (eq. 5), mean of the eight neighbours at the first level"});
-        taps.push_back({.name = name + "FirstMoment", .channels = "Y", .unit = kRadiance, .help = "mu1', the integrated luminance (sec. 4.2)"});
-        taps.push_back({.name = name + "SecondMoment", .channels = "Y", .help = "mu2', the integrated square of the luminance (sec. 4.2)"});
+        taps.push_back({.name = name + "LuminanceWeight",
+                        .channels = "Y",
+                        .range = ValueRange{0, 1},
+                        .colourMap = "gray",
+                        .help = "w_l (eq. 5), mean of the eight neighbours at the first level"});
+        taps.push_back({.name = name + "FirstMoment",
+                        .channels = "Y",
+                        .unit = kRadiance,
+                        .help = "mu1', the integrated luminance (sec. 4.2)"});
+        taps.push_back({.name = name + "SecondMoment",
+                        .channels = "Y",
+                        .help = "mu2', the integrated square of the luminance (sec. 4.2)"});
         for (int level = 0; level <= maxLevels; ++level) {
             const std::string number = std::to_string(level);
             taps.push_back({.name = name + "Level" + number,
@@ -37,8 +63,9 @@ std::vector<Tap> svgfTaps(int maxLevels) {
             taps.push_back({.name = name + "Variance" + number,
                             .channels = "Y",
                             .colourMap = "magma",
-                            .help = level == 0 ? "Estimated variance of a sample's luminance, the first level's input"
-                                               : "Variance of luminance after this level; the last one's where fewer run"});
+                            .help = level == 0
+                                        ? "Estimated variance of a sample's luminance, the first level's input"
+                                        : "Variance of luminance after this level; the last one's where fewer run"});
         }
     }
     return taps;
@@ -58,7 +85,8 @@ void keepIntegrated(CapturedTaps& taps, const TemporalHistory& integrated) {
         taps.keep(name + "FirstMoment", component.mean);
         if (Image* second = taps.target(name + "SecondMoment")) {
             *second = component.sampleVariance;
-            for (size_t i = 0; i < second->size(); ++i) second->data()[i] += component.mean.data()[i] * component.mean.data()[i];
+            for (size_t i = 0; i < second->size(); ++i)
+                second->data()[i] += component.mean.data()[i] * component.mean.data()[i];
         }
     }
 }
@@ -71,8 +99,8 @@ void keepLevel(CapturedTaps& taps, int level, bool indirect, const Illumination&
 
 void keepEdgeWeights(CapturedTaps& taps, const SurfaceGuide& guide, const AtrousSettings& settings,
                      const Illumination& direct, const Illumination& indirect) {
-    Image* const targets[4] = {taps.target("depthWeight"), taps.target("normalWeight"), taps.target("directLuminanceWeight"),
-                               taps.target("indirectLuminanceWeight")};
+    Image* const targets[4] = {taps.target("depthWeight"), taps.target("normalWeight"),
+                               taps.target("directLuminanceWeight"), taps.target("indirectLuminanceWeight")};
     if (!targets[0] && !targets[1] && !targets[2] && !targets[3]) return;
     for (Image* image : targets)
         if (image) image->reset({guide.width, guide.height}, 1);
@@ -83,7 +111,8 @@ void keepEdgeWeights(CapturedTaps& taps, const SurfaceGuide& guide, const Atrous
             int count = 0;
             for (int j = -1; j <= 1; ++j)
                 for (int i = -1; i <= 1; ++i) {
-                    if ((i == 0 && j == 0) || x + i < 0 || y + j < 0 || x + i >= guide.width || y + j >= guide.height) continue;
+                    if ((i == 0 && j == 0) || x + i < 0 || y + j < 0 || x + i >= guide.width || y + j >= guide.height)
+                        continue;
                     const EdgeWeights w = edgeWeights(guide, settings, direct, {x, y}, i, j);
                     sums[0] += w.depth;
                     sums[1] += w.normal;

@@ -14,7 +14,7 @@ void keepIntegrated(CapturedTaps& taps, const TemporalHistory& integrated);
 /// Colour and variance after `level` (0: before the first). `indirect` false: the direct component.
 void keepLevel(CapturedTaps& taps, int level, bool indirect, const Illumination& planes);
 /// Eqs. 3 to 5 of the first level, each as the mean weight of the eight neighbours.
-void keepEdgeWeights(CapturedTaps& taps, const SurfaceGuide& guide, const AtrousSettings& settings, const Illumination& direct,
-                     const Illumination& indirect);
+void keepEdgeWeights(CapturedTaps& taps, const SurfaceGuide& guide, const AtrousSettings& settings,
+                     const Illumination& direct, const Illumination& indirect);
 
 }  // namespace lumi

@@ -43,8 +43,7 @@ void convertRun(const Elements& from, float scale, float lowest, To* out, size_t
             std::memcpy(&value, element + static_cast<size_t>(c) * sizeof(From), sizeof(From));
             if constexpr (std::is_floating_point_v<To>)
                 out[i * outStride + static_cast<size_t>(c)] = std::max(static_cast<To>(value) * scale, lowest);
-            else
-                out[i * outStride + static_cast<size_t>(c)] = static_cast<To>(value);
+            else out[i * outStride + static_cast<size_t>(c)] = static_cast<To>(value);
         }
     }
 }
@@ -63,13 +62,13 @@ void convert(const Elements& from, To* out) {
         case TINYGLTF_COMPONENT_TYPE_SHORT:
             return convertRun<int16_t>(from, scale(32767), from.normalized ? minusOne : none, out, n);
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return convertRun<uint16_t>(from, scale(65535), none, out, n);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return convertRun<uint32_t>(from, scale(4294967295.0f), none, out, n);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+            return convertRun<uint32_t>(from, scale(4294967295.0f), none, out, n);
         default: break;
     }
     if constexpr (std::is_same_v<To, float>) {
         const size_t bytes = n * sizeof(float);
-        if (from.stride == bytes)
-            std::memcpy(out, from.data, from.count * bytes);
+        if (from.stride == bytes) std::memcpy(out, from.data, from.count * bytes);
         else
             for (size_t i = 0; i < from.count; ++i) std::memcpy(out + i * n, from.data + i * from.stride, bytes);
     }
@@ -152,7 +151,8 @@ private:
         // Below 2^32 elements of at most 252 + 64 bytes: no overflow.
         const size_t needed = (count - 1) * stride + bytes;
         if (offset > available || needed > available - offset)
-            document_.fail(path, "reaches past the end of its buffer view", "at most " + std::to_string(available) + " bytes",
+            document_.fail(path, "reaches past the end of its buffer view",
+                           "at most " + std::to_string(available) + " bytes",
                            std::to_string(offset) + " + " + std::to_string(needed));
     }
 

@@ -46,7 +46,8 @@ void checkWeights(const Document& document, const AnimationChannel& channel, int
 
 /// One channel, or nothing if it moves nothing of the scene.
 std::optional<AnimationChannel> readChannel(const Document& document, const NodeTree& tree,
-                                            const tinygltf::Animation& animation, size_t index, const std::string& path) {
+                                            const tinygltf::Animation& animation, size_t index,
+                                            const std::string& path) {
     const tinygltf::AnimationChannel& source = animation.channels[index];
     const std::string channelPath = path + "/channels/" + std::to_string(index);
     const std::optional<AnimatedProperty> property = propertyOf(source.target_path);

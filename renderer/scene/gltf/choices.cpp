@@ -29,19 +29,22 @@ std::vector<std::string> namesIn(const Json& parent, const char* array) {
 Choices readChoices(const std::filesystem::path& path) {
     const std::vector<uint8_t> file = readFile(path);
     const std::string name = path.filename().string();
-    const std::string_view json = isBinary(file) ? jsonChunk(file, name)
-                                                 : std::string_view(reinterpret_cast<const char*>(file.data()), file.size());
+    const std::string_view json = isBinary(file)
+                                      ? jsonChunk(file, name)
+                                      : std::string_view(reinterpret_cast<const char*>(file.data()), file.size());
     inspectJson(json, name);
     // Accessors and nodes, most of a file, are dropped as they are read.
     const Json tree = Json::parse(json.begin(), json.end(), [](int depth, Json::parse_event_t event, Json& parsed) {
-        return depth != 1 || event != Json::parse_event_t::key || parsed == "scene" || parsed == "scenes" || parsed == "extensions";
+        return depth != 1 || event != Json::parse_event_t::key || parsed == "scene" || parsed == "scenes" ||
+               parsed == "extensions";
     });
     Choices choices;
     if (!tree.is_object()) return choices;
     choices.scenes = namesIn(tree, "scenes");
     if (tree.contains("scene") && tree["scene"].is_number_integer())
         choices.defaultScene = std::max(tree["scene"].get<int>(), 0);
-    if (tree.contains("extensions") && tree["extensions"].is_object() && tree["extensions"].contains("KHR_materials_variants"))
+    if (tree.contains("extensions") && tree["extensions"].is_object() &&
+        tree["extensions"].contains("KHR_materials_variants"))
         choices.variants = namesIn(tree["extensions"]["KHR_materials_variants"], "variants");
     return choices;
 }

@@ -39,7 +39,8 @@ private:
     /// Null if there is no such accessor, which is said where it is read.
     const tinygltf::Accessor* accessor(int index) const {
         const auto& accessors = document_.model().accessors;
-        return index >= 0 && static_cast<size_t>(index) < accessors.size() ? &accessors[static_cast<size_t>(index)] : nullptr;
+        return index >= 0 && static_cast<size_t>(index) < accessors.size() ? &accessors[static_cast<size_t>(index)]
+                                                                           : nullptr;
     }
 
     void spend(Budget& budget, uint64_t count, const std::string& path) const {

@@ -11,8 +11,8 @@ namespace lumi::gltf {
 ///   hundreds of sparse expressions needs 8);
 /// - instances of EXT_mesh_gpu_instancing, with data or without: 2^16 + 4 bytes (a translation takes 12; up to 48 nodes
 ///   may share it).
-/// Looks at the meshes and nodes of the chosen scene and at all animations. Throws Error(BadInput) with the JSON path of
-/// what passes a limit, and the limit.
+/// Looks at the meshes and nodes of the chosen scene and at all animations. Throws Error(BadInput) with the JSON path
+/// of what passes a limit, and the limit.
 void checkCounts(const Document& document, const NodeTree& tree);
 
 }  // namespace lumi::gltf

@@ -97,8 +97,8 @@ Document::Document(const std::filesystem::path& path, MessageLog& log, const Loa
 
 void Document::parse(std::span<const uint8_t> file) {
     const bool binary = isBinary(file);
-    const std::string_view json = binary ? jsonChunk(file, name_)
-                                         : std::string_view(reinterpret_cast<const char*>(file.data()), file.size());
+    const std::string_view json =
+        binary ? jsonChunk(file, name_) : std::string_view(reinterpret_cast<const char*>(file.data()), file.size());
     if (!binary && lowerExtension(path_) == ".glb")
         throwBadInput({.what = "not a GLB file", .where = name_, .expected = "the magic bytes \"glTF\""});
     uint64_t bytes = 0;
@@ -138,8 +138,9 @@ void Document::parse(std::span<const uint8_t> file) {
     for (size_t i = 0; i < images_.size(); ++i) {
         const tinygltf::Image& image = model_.images[i];
         images_[i].bufferView = image.bufferView;
-        images_[i].name = !image.uri.empty() ? image.uri : !image.name.empty() ? image.name
-                                                                               : "image " + std::to_string(i);
+        images_[i].name = !image.uri.empty()    ? image.uri
+                          : !image.name.empty() ? image.name
+                                                : "image " + std::to_string(i);
     }
 }
 
@@ -167,8 +168,8 @@ void Document::fail(const std::string& jsonPath, const std::string& what, const 
 
 void Document::checkIndex(int64_t index, size_t count, const std::string& jsonPath, const char* collection) const {
     if (index >= 0 && static_cast<uint64_t>(index) < count) return;
-    const std::string expected = count == 0 ? "none, since there are no " + std::string(collection)
-                                            : "0 to " + std::to_string(count - 1);
+    const std::string expected =
+        count == 0 ? "none, since there are no " + std::string(collection) : "0 to " + std::to_string(count - 1);
     fail(jsonPath, "no such entry in /" + std::string(collection), expected, std::to_string(index));
 }
 

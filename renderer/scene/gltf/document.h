@@ -12,10 +12,10 @@ namespace lumi::gltf {
 
 /// Where the encoded bytes of an image are.
 struct ImageSource {
-    std::filesystem::path file;   ///< an external file, or empty
-    int bufferView = -1;          ///< inside a buffer, or -1
-    std::vector<uint8_t> bytes;   ///< of a data URI
-    std::string name;             ///< for messages
+    std::filesystem::path file;  ///< an external file, or empty
+    int bufferView = -1;         ///< inside a buffer, or -1
+    std::vector<uint8_t> bytes;  ///< of a data URI
+    std::string name;            ///< for messages
 };
 
 /// A parsed glTF file. Its JSON is well-formed and its buffers are complete; indices are checked where they are used.

@@ -43,20 +43,13 @@ bool peekCounts(std::span<const uint8_t> bytes, Counts& counts) {
 
 int componentType(draco::DataType type) {
     switch (type) {
-        case draco::DT_INT8:
-            return TINYGLTF_COMPONENT_TYPE_BYTE;
-        case draco::DT_UINT8:
-            return TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
-        case draco::DT_INT16:
-            return TINYGLTF_COMPONENT_TYPE_SHORT;
-        case draco::DT_UINT16:
-            return TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
-        case draco::DT_UINT32:
-            return TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-        case draco::DT_FLOAT32:
-            return TINYGLTF_COMPONENT_TYPE_FLOAT;
-        default:
-            return 0;
+        case draco::DT_INT8: return TINYGLTF_COMPONENT_TYPE_BYTE;
+        case draco::DT_UINT8: return TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
+        case draco::DT_INT16: return TINYGLTF_COMPONENT_TYPE_SHORT;
+        case draco::DT_UINT16: return TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
+        case draco::DT_UINT32: return TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+        case draco::DT_FLOAT32: return TINYGLTF_COMPONENT_TYPE_FLOAT;
+        default: return 0;
     }
 }
 

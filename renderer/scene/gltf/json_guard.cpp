@@ -76,9 +76,9 @@ public:
         const size_t lineStart = before.rfind('\n') == before.npos ? 0 : before.rfind('\n') + 1;
         std::string what = error.what();
         if (const size_t text = what.find("syntax error"); text != what.npos) what = what.substr(text);
-        throwBadInput({.what = "not valid JSON: " + what,
-                       .where = where_ + ":" + std::to_string(line) + ":" +
-                                std::to_string(before.size() - lineStart + 1)});
+        throwBadInput(
+            {.what = "not valid JSON: " + what,
+             .where = where_ + ":" + std::to_string(line) + ":" + std::to_string(before.size() - lineStart + 1)});
     }
 
 private:

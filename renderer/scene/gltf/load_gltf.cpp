@@ -36,7 +36,8 @@ void dropUnusedDefault(Scene& scene) {
     for (const Instance& instance : scene.instances) {
         if (!seen.insert(instance.mesh.get()).second) continue;
         const std::vector<uint32_t>& table = instance.mesh->triangleMaterial;
-        if (table.empty() ? instance.mesh->material == last : std::find(table.begin(), table.end(), last) != table.end())
+        if (table.empty() ? instance.mesh->material == last
+                          : std::find(table.begin(), table.end(), last) != table.end())
             return;
     }
     scene.materials.pop_back();
@@ -75,7 +76,8 @@ Scene loadGltf(const std::filesystem::path& path, MessageLog& log, const LoadOpt
     std::vector<std::shared_ptr<const Mesh>> meshes;
     parallelInvoke(
         [&] {
-            library.load([&](float done) { document.progress(0.1f + 0.8f * done, "Decoding textures, reading meshes"); });
+            library.load(
+                [&](float done) { document.progress(0.1f + 0.8f * done, "Decoding textures, reading meshes"); });
         },
         [&] { meshes = gltf::loadMeshes(document, tree.usedMeshes(), materials); });
     scene.materials = std::move(materials.materials);

@@ -65,7 +65,8 @@ private:
         const std::vector<double>& base = pbr.baseColorFactor;
         material_.baseColor = clampedColour(vec3From({base[0], base[1], base[2]}, Vec3(1)));
         material_.alpha = unit(base[3], 1);
-        material_.baseColorTexture = core(pbr.baseColorTexture, "pbrMetallicRoughness/baseColorTexture", TextureUse::Colour);
+        material_.baseColorTexture =
+            core(pbr.baseColorTexture, "pbrMetallicRoughness/baseColorTexture", TextureUse::Colour);
         material_.metallic = unit(pbr.metallicFactor, 1);
         material_.roughness = unit(pbr.roughnessFactor, 1);
         material_.metallicRoughnessTexture =

@@ -59,8 +59,12 @@ int tangentSet(const Material& material) {
 class MeshReader {
 public:
     MeshReader(const Document& document, const MaterialSet& set, int variant, size_t index)
-        : document_(document), materials_(set.materials), uvSets_(set.uvSets), variant_(variant),
-          source_(document.model().meshes[index]), path_("/meshes/" + std::to_string(index)) {
+        : document_(document),
+          materials_(set.materials),
+          uvSets_(set.uvSets),
+          variant_(variant),
+          source_(document.model().meshes[index]),
+          path_("/meshes/" + std::to_string(index)) {
         if (source_.name.empty()) source_.name = "mesh " + std::to_string(index);
     }
 
@@ -83,10 +87,8 @@ private:
         const std::string path = path_ + "/primitives/" + std::to_string(p);
         checkVariants(primitive, path);
         int material = materialIndex(primitive, variant_);
-        if (material < 0)
-            material = static_cast<int>(materials_.size()) - 1;
-        else
-            document_.checkIndex(material, materials_.size() - 1, path + "/material", "materials");
+        if (material < 0) material = static_cast<int>(materials_.size()) - 1;
+        else document_.checkIndex(material, materials_.size() - 1, path + "/material", "materials");
         const UvSets& uvSets = uvSets_[static_cast<size_t>(material)];
 
         const std::unique_ptr<const DracoMesh> draco = decodeDraco(document_, primitive, path);
@@ -118,9 +120,9 @@ private:
         if (!extension || !extension->Has("mappings") || !extension->Get("mappings").IsArray()) return;
         const tinygltf::Value& mappings = extension->Get("mappings");
         for (int m = 0; m < static_cast<int>(mappings.ArrayLen()); ++m)
-            document_.checkIndex(integerOf(mappings.Get(m), "material", -1), materials_.size() - 1,
-                                 path + "/extensions/KHR_materials_variants/mappings/" + std::to_string(m) + "/material",
-                                 "materials");
+            document_.checkIndex(
+                integerOf(mappings.Get(m), "material", -1), materials_.size() - 1,
+                path + "/extensions/KHR_materials_variants/mappings/" + std::to_string(m) + "/material", "materials");
     }
 
     /// Normals and tangents: what one part has, all have, since they become one mesh.

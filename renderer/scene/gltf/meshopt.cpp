@@ -75,12 +75,9 @@ void undoFilter(const Document& document, const Compressed& view, std::vector<ui
                       (!quaternion || view.stride == 8);
     if (!known || !fits)
         document.fail(path + "/filter", "no such filter for this layout", {}, view.filter.substr(0, 40));
-    if (octahedral)
-        meshopt_decodeFilterOct(bytes.data(), view.count, view.stride);
-    else if (quaternion)
-        meshopt_decodeFilterQuat(bytes.data(), view.count, view.stride);
-    else
-        meshopt_decodeFilterExp(bytes.data(), view.count, view.stride);
+    if (octahedral) meshopt_decodeFilterOct(bytes.data(), view.count, view.stride);
+    else if (quaternion) meshopt_decodeFilterQuat(bytes.data(), view.count, view.stride);
+    else meshopt_decodeFilterExp(bytes.data(), view.count, view.stride);
 }
 
 /// 0 if all is well.
@@ -94,9 +91,7 @@ int decodeInto(const Compressed& view, std::vector<uint8_t>& bytes) {
 
 }  // namespace
 
-bool isMeshopt(const tinygltf::BufferView& view) {
-    return extensionOf(view.extensions, kExtension) != nullptr;
-}
+bool isMeshopt(const tinygltf::BufferView& view) { return extensionOf(view.extensions, kExtension) != nullptr; }
 
 std::vector<uint8_t> decodeMeshopt(const Document& document, const tinygltf::BufferView& source,
                                    const std::string& viewPath) {

@@ -23,8 +23,11 @@ void makeRoom(Things& things, size_t more) {
 }  // namespace
 
 NodeTree::NodeTree(const Document& document, Scene& scene)
-    : document_(document), scene_(scene), nodeOf_(document.model().nodes.size(), -1),
-      usedMeshes_(document.model().meshes.size(), false), skinOf_(document.model().skins.size(), -1) {
+    : document_(document),
+      scene_(scene),
+      nodeOf_(document.model().nodes.size(), -1),
+      usedMeshes_(document.model().meshes.size(), false),
+      skinOf_(document.model().skins.size(), -1) {
     const tinygltf::Model& model = document.model();
     for (size_t i = 0; i < model.nodes.size(); ++i)
         for (size_t c = 0; c < model.nodes[i].children.size(); ++c)
@@ -44,8 +47,10 @@ NodeTree::NodeTree(const Document& document, Scene& scene)
         for (const int joint : model.skins[static_cast<size_t>(skin)].joints) {
             document.checkIndex(joint, model.nodes.size(), "/skins/" + std::to_string(skin) + "/joints", "nodes");
             int top = joint;
-            for (size_t steps = 0; parentOf[static_cast<size_t>(top)] >= 0 && nodeOf_[static_cast<size_t>(top)] < 0; ++steps) {
-                if (steps > model.nodes.size()) document.fail(nodePath(static_cast<size_t>(joint)), "is its own ancestor");
+            for (size_t steps = 0; parentOf[static_cast<size_t>(top)] >= 0 && nodeOf_[static_cast<size_t>(top)] < 0;
+                 ++steps) {
+                if (steps > model.nodes.size())
+                    document.fail(nodePath(static_cast<size_t>(joint)), "is its own ancestor");
                 top = parentOf[static_cast<size_t>(top)];
             }
             if (nodeOf_[static_cast<size_t>(top)] < 0) walk(top, nodePath(static_cast<size_t>(top)));
@@ -113,7 +118,8 @@ void NodeTree::addNode(int index, int parent) {
     std::vector<double> weights = source.weights;
     if (weights.empty() && source.mesh >= 0 && source.mesh < static_cast<int>(document_.model().meshes.size()))
         weights = document_.model().meshes[static_cast<size_t>(source.mesh)].weights;
-    for (const double weight : weights) node.morphWeights.push_back(std::isfinite(weight) ? static_cast<float>(weight) : 0);
+    for (const double weight : weights)
+        node.morphWeights.push_back(std::isfinite(weight) ? static_cast<float>(weight) : 0);
     nodeOf_[static_cast<size_t>(index)] = static_cast<int>(scene_.nodes.size());
     order_.push_back(index);
     scene_.nodes.push_back(std::move(node));
@@ -141,8 +147,7 @@ void NodeTree::addInstances(size_t index) {
     }
     if (const auto* extension = extensionOf(source.extensions, "EXT_mesh_gpu_instancing"))
         addGpuInstances(index, instance, *extension);
-    else
-        scene_.instances.push_back(instance);
+    else scene_.instances.push_back(instance);
 }
 
 void NodeTree::addGpuInstances(size_t index, const Instance& prototype, const tinygltf::Value& extension) {
@@ -198,8 +203,7 @@ int NodeTree::addSkin(int index, const std::string& jsonPath) {
     for (const int joint : source.joints) skin.joints.push_back(nodeOf_[static_cast<size_t>(joint)]);
     if (source.inverseBindMatrices >= 0)
         skin.inverseBind = readVectors<Mat4>(document_, source.inverseBindMatrices, path + "/inverseBindMatrices");
-    else
-        skin.inverseBind.assign(skin.joints.size(), Mat4(1));
+    else skin.inverseBind.assign(skin.joints.size(), Mat4(1));
     if (skin.inverseBind.size() < skin.joints.size())
         document_.fail(path + "/inverseBindMatrices", "fewer matrices than joints", std::to_string(skin.joints.size()),
                        std::to_string(skin.inverseBind.size()));
@@ -216,8 +220,8 @@ void NodeTree::checkJoints(const Instance& instance, const std::string& jsonPath
     const uint32_t largest = *std::max_element(joints.begin(), joints.end());
     const size_t count = scene_.skins[static_cast<size_t>(instance.skin)].joints.size();
     if (largest >= count)
-        document_.fail(jsonPath, "the mesh refers to a joint that the skin does not have", "below " + std::to_string(count),
-                       std::to_string(largest));
+        document_.fail(jsonPath, "the mesh refers to a joint that the skin does not have",
+                       "below " + std::to_string(count), std::to_string(largest));
 }
 
 void NodeTree::addCamera(size_t index) {
@@ -243,7 +247,8 @@ void NodeTree::addLight(size_t index) {
     const auto* extension = extensionOf(document_.model().nodes[index].extensions, "KHR_lights_punctual");
     if (!extension) return;
     const int number = integerOf(*extension, "light", -1);
-    document_.checkIndex(number, document_.model().lights.size(), nodePath(index) + "/extensions/KHR_lights_punctual/light",
+    document_.checkIndex(number, document_.model().lights.size(),
+                         nodePath(index) + "/extensions/KHR_lights_punctual/light",
                          "extensions/KHR_lights_punctual/lights");
     const tinygltf::Light& source = document_.model().lights[static_cast<size_t>(number)];
     Light light;
@@ -258,7 +263,8 @@ void NodeTree::addLight(size_t index) {
     } else if (source.type == "spot") {
         light.type = LightType::Spot;
         light.outerConeDeg = std::clamp(degrees(static_cast<float>(source.spot.outerConeAngle)), 0.01f, 90.0f);
-        light.innerConeDeg = std::clamp(degrees(static_cast<float>(source.spot.innerConeAngle)), 0.0f, light.outerConeDeg);
+        light.innerConeDeg =
+            std::clamp(degrees(static_cast<float>(source.spot.innerConeAngle)), 0.0f, light.outerConeDeg);
     }
     if (source.type != "directional" && source.type != "spot" && source.type != "point")
         document_.fail("/extensions/KHR_lights_punctual/lights/" + std::to_string(number) + "/type",

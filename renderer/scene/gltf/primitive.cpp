@@ -151,8 +151,8 @@ Mesh readVertices(const Document& document, const tinygltf::Primitive& primitive
         mesh.morphTargets.push_back({targets.read<Vec3>(target, "POSITION"), targets.read<Vec3>(target, "NORMAL"),
                                      targets.read<Vec3>(target, "TANGENT")});
     if (const size_t i = firstOutOfReach(mesh.positions); i < mesh.positions.size())
-        document.fail(where + "/POSITION", "the position of vertex " + std::to_string(i) + " is out of range", reachText(),
-                      outOfReachText(mesh.positions[i]));
+        document.fail(where + "/POSITION", "the position of vertex " + std::to_string(i) + " is out of range",
+                      reachText(), outOfReachText(mesh.positions[i]));
     makeHarmless(mesh);
     return mesh;
 }

@@ -33,9 +33,10 @@ TextureImage::Level standInLevel(TextureUse use) {
 
 /// What a texture without an image of its own is encoded in.
 std::string formatOf(const tinygltf::ExtensionMap& extensions) {
-    constexpr std::pair<const char*, const char*> kFormats[] = {
-        {"KHR_texture_basisu", "KTX2 (KHR_texture_basisu)"}, {"EXT_texture_webp", "WebP (EXT_texture_webp)"},
-        {"EXT_texture_avif", "AVIF (EXT_texture_avif)"}, {"MSFT_texture_dds", "DDS (MSFT_texture_dds)"}};
+    constexpr std::pair<const char*, const char*> kFormats[] = {{"KHR_texture_basisu", "KTX2 (KHR_texture_basisu)"},
+                                                                {"EXT_texture_webp", "WebP (EXT_texture_webp)"},
+                                                                {"EXT_texture_avif", "AVIF (EXT_texture_avif)"},
+                                                                {"MSFT_texture_dds", "DDS (MSFT_texture_dds)"}};
     for (const auto& [extension, format] : kFormats)
         if (extensions.contains(extension)) return format;
     return "an unknown format";
@@ -120,10 +121,8 @@ void TextureLibrary::fill(Entry& entry, TextureImage::Level level) const {
                                                [](const auto& image) { return image != nullptr; }));
     for (const auto& image : entry.images) {
         if (!image) continue;
-        if (--users > 0)
-            image->levels.push_back(level);
-        else
-            image->levels.push_back(std::move(level));
+        if (--users > 0) image->levels.push_back(level);
+        else image->levels.push_back(std::move(level));
         buildMips(*image);
     }
 }

@@ -51,10 +51,8 @@ void readTransform(const Document& document, const tinygltf::Node& source, const
         const std::vector<float> m = checkedNumbers(document, source.matrix, 16, path + "/matrix");
         for (size_t i = 0; i < 16; ++i) node.matrix[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = m[i];
         for (int column = 0; column < 4; ++column) node.matrix[column].w = column == 3 ? 1.0f : 0.0f;
-        if (const auto transform = decompose(node.matrix))
-            node.local = *transform;
-        else
-            node.hasMatrix = true;
+        if (const auto transform = decompose(node.matrix)) node.local = *transform;
+        else node.hasMatrix = true;
         return;
     }
     if (!source.translation.empty()) {

@@ -14,17 +14,19 @@ namespace {
 
 void addCreases(const tinyobj::tag_t& tag, SubdivisionCage& cage) {
     for (size_t i = 0; i + 1 < tag.intValues.size(); ++i) {
-        const float sharpness = tag.floatValues.empty() ? 10.0f
-                                                        : static_cast<float>(tag.floatValues[std::min(i, tag.floatValues.size() - 1)]);
-        cage.creases.push_back({static_cast<uint32_t>(tag.intValues[i]), static_cast<uint32_t>(tag.intValues[i + 1]),
-                                sharpness});
+        const float sharpness = tag.floatValues.empty()
+                                    ? 10.0f
+                                    : static_cast<float>(tag.floatValues[std::min(i, tag.floatValues.size() - 1)]);
+        cage.creases.push_back(
+            {static_cast<uint32_t>(tag.intValues[i]), static_cast<uint32_t>(tag.intValues[i + 1]), sharpness});
     }
 }
 
 void addCorners(const tinyobj::tag_t& tag, SubdivisionCage& cage) {
     for (size_t i = 0; i < tag.intValues.size(); ++i) {
-        const float sharpness = tag.floatValues.empty() ? 10.0f
-                                                        : static_cast<float>(tag.floatValues[std::min(i, tag.floatValues.size() - 1)]);
+        const float sharpness = tag.floatValues.empty()
+                                    ? 10.0f
+                                    : static_cast<float>(tag.floatValues[std::min(i, tag.floatValues.size() - 1)]);
         cage.corners.push_back({static_cast<uint32_t>(tag.intValues[i]), sharpness});
     }
 }
@@ -88,7 +90,8 @@ void uncommentTags(std::string& text) {
 }
 
 bool hasTags(const std::vector<tinyobj::shape_t>& shapes) {
-    return std::any_of(shapes.begin(), shapes.end(), [](const tinyobj::shape_t& shape) { return !shape.mesh.tags.empty(); });
+    return std::any_of(shapes.begin(), shapes.end(),
+                       [](const tinyobj::shape_t& shape) { return !shape.mesh.tags.empty(); });
 }
 
 SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<tinyobj::shape_t>& shapes,
@@ -107,7 +110,8 @@ SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<ti
     }
     if (cage.faceSizes.empty()) throwBadInput({"holds no faces", where, "a polygon cage", ""});
     cage.material = cage.faceMaterials.front();
-    if (std::count(cage.faceMaterials.begin(), cage.faceMaterials.end(), cage.material) == std::ssize(cage.faceMaterials))
+    if (std::count(cage.faceMaterials.begin(), cage.faceMaterials.end(), cage.material) ==
+        std::ssize(cage.faceMaterials))
         cage.faceMaterials.clear();
     if (!attributes.texcoords.empty() && everyCornerHasUv(shapes))
         for (size_t i = 0; i + 1 < attributes.texcoords.size(); i += 2)

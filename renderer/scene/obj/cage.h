@@ -15,10 +15,10 @@ void uncommentTags(std::string& objText);
 /// True if a shape has a tag.
 bool hasTags(const std::vector<tinyobj::shape_t>& shapes);
 
-/// All shapes of an OBJ as one subdivision cage: faces as they are, with OpenSubdiv's `t` tag lines (crease, corner, hole,
-/// interpolateboundary, facevaryinginterpolateboundary, creasemethod, smoothtriangles). Other tags are warnings; so are
-/// hierarchical edits, which are left out. Texture coordinates as in our meshes, v from the top. Materials by tinyobj's
-/// numbers; faces without one get `fallbackMaterial`. Throws Error(BadInput) headed by `where`.
+/// All shapes of an OBJ as one subdivision cage: faces as they are, with OpenSubdiv's `t` tag lines (crease, corner,
+/// hole, interpolateboundary, facevaryinginterpolateboundary, creasemethod, smoothtriangles). Other tags are warnings;
+/// so are hierarchical edits, which are left out. Texture coordinates as in our meshes, v from the top. Materials by
+/// tinyobj's numbers; faces without one get `fallbackMaterial`. Throws Error(BadInput) headed by `where`.
 SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<tinyobj::shape_t>& shapes,
                        uint32_t fallbackMaterial, const std::string& where, MessageLog& log);
 

@@ -74,8 +74,8 @@ ParsedObj parse(const std::filesystem::path& path, MessageLog& log) {
     FolderMaterials materials(path.parent_path(), log, where, parsed.digest);
     std::string warning, error;
     try {
-        const bool good = tinyobj::LoadObj(&parsed.attributes, &parsed.shapes, &parsed.materials, &warning, &error, &text,
-                                           &materials, /*triangulate=*/false, /*default_vcols_fallback=*/false);
+        const bool good = tinyobj::LoadObj(&parsed.attributes, &parsed.shapes, &parsed.materials, &warning, &error,
+                                           &text, &materials, /*triangulate=*/false, /*default_vcols_fallback=*/false);
         if (!good)
             throwBadInput({.what = "damaged OBJ: " + error.substr(0, error.find_first_of("\r\n")), .where = where});
     } catch (const std::bad_alloc&) {
@@ -87,8 +87,8 @@ ParsedObj parse(const std::filesystem::path& path, MessageLog& log) {
     return parsed;
 }
 
-/// All shapes as the limit surface of one cage, if that is asked for. Nothing where only the file's own tags ask for it and
-/// there is no limit surface.
+/// All shapes as the limit surface of one cage, if that is asked for. Nothing where only the file's own tags ask for it
+/// and there is no limit surface.
 std::shared_ptr<Mesh> limitSurface(const ParsedObj& parsed, const Subdivision& subdivision, uint32_t fallback,
                                    const std::string& where, MessageLog& log, const std::stop_token& stop) {
     const bool asked = subdivision.scheme == SubdivisionScheme::CatmullClark;
@@ -107,22 +107,26 @@ std::shared_ptr<Mesh> limitSurface(const ParsedObj& parsed, const Subdivision& s
 
 /// The shapes as meshes, or the one that they are the cage of.
 std::vector<std::shared_ptr<Mesh>> buildMeshes(const ParsedObj& parsed, const std::vector<Material>& materials,
-                                               const Subdivision& subdivision, const std::string& where, MessageLog& log,
-                                               const std::stop_token& stop) {
+                                               const Subdivision& subdivision, const std::string& where,
+                                               MessageLog& log, const std::stop_token& stop) {
     const uint32_t fallback = static_cast<uint32_t>(materials.size() - 1);
     std::vector<std::shared_ptr<Mesh>> meshes{limitSurface(parsed, subdivision, fallback, where, log, stop)};
     const bool subdivided = meshes.front() != nullptr;
     if (!subdivided) meshes.resize(parsed.shapes.size());
-    parallelFor(static_cast<int64_t>(meshes.size()), [&](int64_t i) {
-        std::shared_ptr<Mesh>& mesh = meshes[static_cast<size_t>(i)];
-        if (!subdivided)
-            mesh = std::make_shared<Mesh>(meshFromShape(parsed.attributes, parsed.shapes[static_cast<size_t>(i)], fallback, where));
-        checkMesh(*mesh, where);
-        const auto needsTangents = [&](uint32_t m) { return bool(materials[m].normalTexture); };
-        const bool any = std::any_of(mesh->triangleMaterial.begin(), mesh->triangleMaterial.end(), needsTangents) ||
-                         (mesh->triangleMaterial.empty() && needsTangents(mesh->material));
-        if (any && !mesh->uv[0].empty() && !mesh->normals.empty()) computeTangents(*mesh);
-    }, stop);
+    parallelFor(
+        static_cast<int64_t>(meshes.size()),
+        [&](int64_t i) {
+            std::shared_ptr<Mesh>& mesh = meshes[static_cast<size_t>(i)];
+            if (!subdivided)
+                mesh = std::make_shared<Mesh>(
+                    meshFromShape(parsed.attributes, parsed.shapes[static_cast<size_t>(i)], fallback, where));
+            checkMesh(*mesh, where);
+            const auto needsTangents = [&](uint32_t m) { return bool(materials[m].normalTexture); };
+            const bool any = std::any_of(mesh->triangleMaterial.begin(), mesh->triangleMaterial.end(), needsTangents) ||
+                             (mesh->triangleMaterial.empty() && needsTangents(mesh->material));
+            if (any && !mesh->uv[0].empty() && !mesh->normals.empty()) computeTangents(*mesh);
+        },
+        stop);
     return meshes;
 }
 
@@ -149,7 +153,8 @@ Scene loadObj(const std::filesystem::path& path, MessageLog& log, const LoadOpti
 
     step(0.7f, "Building meshes");
     const uint32_t fallback = static_cast<uint32_t>(scene.materials.size() - 1);
-    const std::vector<std::shared_ptr<Mesh>> meshes = buildMeshes(parsed, scene.materials, options.subdivision, where, log, options.stop);
+    const std::vector<std::shared_ptr<Mesh>> meshes =
+        buildMeshes(parsed, scene.materials, options.subdivision, where, log, options.stop);
     step(0.9f, "Placing objects");
     bool usesFallback = false;
     for (size_t i = 0; i < meshes.size(); ++i) {

@@ -26,7 +26,8 @@ bool isFiniteNumber(std::string_view word) {
     double value = 0;
     const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
     // What is too small for a double is 0, and good.
-    const bool fits = code == std::errc() || (code == std::errc::result_out_of_range && word.find_first_of("eE") != word.npos && word.find("-", 1) != word.npos);
+    const bool fits = code == std::errc() || (code == std::errc::result_out_of_range &&
+                                              word.find_first_of("eE") != word.npos && word.find("-", 1) != word.npos);
     return fits && end == word.data() + word.size() && std::isfinite(static_cast<float>(value));
 }
 

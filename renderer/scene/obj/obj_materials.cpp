@@ -55,8 +55,9 @@ void convertReflection(const tinyobj::material_t& source, Material& material) {
 
 void convertTextures(const tinyobj::material_t& source, const ObjImages& images, Material& material) {
     if (!source.alpha_texname.empty()) {
-        material.baseColorTexture = makeTexture(images.withAlpha(source.diffuse_texname, source.alpha_texname),
-                                                source.diffuse_texname.empty() ? source.alpha_texopt : source.diffuse_texopt);
+        material.baseColorTexture =
+            makeTexture(images.withAlpha(source.diffuse_texname, source.alpha_texname),
+                        source.diffuse_texname.empty() ? source.alpha_texopt : source.diffuse_texopt);
         material.alphaMode = AlphaMode::Mask;
     } else {
         material.baseColorTexture = makeTexture(images.plain(source.diffuse_texname, true), source.diffuse_texopt);
@@ -66,8 +67,8 @@ void convertTextures(const tinyobj::material_t& source, const ObjImages& images,
     if (material.emissionTexture && isBlack(material.emission)) material.emission = Vec3(1);
     material.normalTexture = makeTexture(images.plain(source.normal_texname, false), source.normal_texopt);
     if (!material.normalTexture)
-        material.normalTexture =
-            makeTexture(images.normalsFromBump(source.bump_texname, source.bump_texopt.bump_multiplier), source.bump_texopt);
+        material.normalTexture = makeTexture(
+            images.normalsFromBump(source.bump_texname, source.bump_texopt.bump_multiplier), source.bump_texopt);
     material.metallicRoughnessTexture =
         makeTexture(images.metallicRoughness(source.metallic_texname, source.roughness_texname),
                     source.roughness_texname.empty() ? source.metallic_texopt : source.roughness_texopt);

@@ -39,7 +39,8 @@ public:
                 const std::string& where)
         : attributes_(attributes), source_(shape.mesh), fallback_(fallbackMaterial), where_(where) {
         mesh_.name = shape.name;
-        const size_t corners = std::accumulate(source_.num_face_vertices.begin(), source_.num_face_vertices.end(), size_t(0));
+        const size_t corners =
+            std::accumulate(source_.num_face_vertices.begin(), source_.num_face_vertices.end(), size_t(0));
         if (corners != source_.indices.size())
             throwBadInput({.what = "a face has too many corners", .where = where, .expected = "at most 255"});
         for (const tinyobj::index_t& index : source_.indices) {
@@ -83,7 +84,8 @@ private:
     void addFace(size_t face, size_t first, size_t count) {
         std::vector<Vec3> corners(count);
         for (size_t c = 0; c < count; ++c) corners[c] = positionOf(source_.indices[first + c].vertex_index);
-        const unsigned int smoothing = face < source_.smoothing_group_ids.size() ? source_.smoothing_group_ids[face] : 0;
+        const unsigned int smoothing =
+            face < source_.smoothing_group_ids.size() ? source_.smoothing_group_ids[face] : 0;
         const int64_t group = smoothing != 0 ? int64_t(smoothing) : -1 - int64_t(face);
         const int id = face < source_.material_ids.size() ? source_.material_ids[face] : -1;
         for (const UVec3& t : triangulatePolygon(corners)) {
@@ -112,7 +114,9 @@ private:
     void addVertex(const tinyobj::index_t& index) {
         mesh_.positions.push_back(positionOf(index.vertex_index));
         if (anyUv_) {
-            const float* t = index.texcoord_index < 0 ? nullptr : &attributes_.texcoords[2 * static_cast<size_t>(index.texcoord_index)];
+            const float* t = index.texcoord_index < 0
+                                 ? nullptr
+                                 : &attributes_.texcoords[2 * static_cast<size_t>(index.texcoord_index)];
             mesh_.uv[0].push_back(t ? Vec2(t[0], 1 - t[1]) : Vec2(0));
         }
         if (keepsNormals()) {

@@ -72,7 +72,8 @@ void ObjImages::load(std::stop_token stop) {
     for (auto& entry : files_) queue.push_back(&entry);
     parallelFor(
         static_cast<int64_t>(queue.size()),
-        [&](int64_t i) { loadFile(queue[static_cast<size_t>(i)]->first, queue[static_cast<size_t>(i)]->second); }, stop);
+        [&](int64_t i) { loadFile(queue[static_cast<size_t>(i)]->first, queue[static_cast<size_t>(i)]->second); },
+        stop);
 }
 
 uint64_t ObjImages::digest() const {

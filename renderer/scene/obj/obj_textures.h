@@ -19,7 +19,8 @@ public:
 
     /// Names a file that will be needed; empty names are ignored.
     void request(const std::string& name);
-    /// Reads and decodes all requested files. Files that are missing, damaged or outside the .obj's folder are warnings.
+    /// Reads and decodes all requested files. Files that are missing, damaged or outside the .obj's folder are
+    /// warnings.
     void load(std::stop_token stop);
     /// Digest of all the files.
     uint64_t digest() const;

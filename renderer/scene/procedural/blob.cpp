@@ -51,15 +51,12 @@ private:
     /// Height over the ball, in units of `swing`, of a form in direction d.
     static float lobes(int target, const Vec3& d) {
         switch (target) {
-            case 0:
-                return 1.6f * (d.x * d.x - d.z * d.z) * (1 - d.y * d.y) + 0.8f * (3 * d.y * d.y - 1) * 0.5f;
-            case 1:
-                return 3.2f * d.x * d.y * d.z + 0.9f * d.y * (5 * d.y * d.y - 3) * 0.5f;
+            case 0: return 1.6f * (d.x * d.x - d.z * d.z) * (1 - d.y * d.y) + 0.8f * (3 * d.y * d.y - 1) * 0.5f;
+            case 1: return 3.2f * d.x * d.y * d.z + 0.9f * d.y * (5 * d.y * d.y - 3) * 0.5f;
             case 2:
                 return 0.75f * std::sin(4 * d.x + 1) * std::sin(4 * d.y + 2) * std::sin(4 * d.z) +
                        0.5f * std::cos(5 * d.y + 2 * d.x);
-            default:
-                return 0;
+            default: return 0;
         }
     }
 
@@ -112,8 +109,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeBlob() {
-    return std::make_unique<Blob>();
-}
+std::unique_ptr<Procedural> makeBlob() { return std::make_unique<Blob>(); }
 
 }  // namespace lumi

@@ -108,10 +108,8 @@ private:
                 x += dice.range(0.06f, 0.16f);
                 continue;
             }
-            if (dice.unit() < 0.16f && right - x > 0.3f)
-                x += addPile(mesh, dice, x, y, room);
-            else
-                x = addRun(mesh, dice, x, y, room, std::min(right, x + dice.range(0.18f, 0.5f)));
+            if (dice.unit() < 0.16f && right - x > 0.3f) x += addPile(mesh, dice, x, y, room);
+            else x = addRun(mesh, dice, x, y, room, std::min(right, x + dice.range(0.18f, 0.5f)));
         }
     }
 
@@ -188,11 +186,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeBookshelf() {
-    return std::make_unique<Bookshelf>();
-}
-std::unique_ptr<Procedural> makeBookStack() {
-    return std::make_unique<BookStack>();
-}
+std::unique_ptr<Procedural> makeBookshelf() { return std::make_unique<Bookshelf>(); }
+std::unique_ptr<Procedural> makeBookStack() { return std::make_unique<BookStack>(); }
 
 }  // namespace lumi

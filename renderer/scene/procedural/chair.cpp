@@ -25,9 +25,14 @@ public:
         constexpr float kTube = 0.011f;
         for (const float s : {-1.0f, 1.0f}) {
             append(mesh, bow({{s * x, seatHeight_ - 0.02f, front}, {s * x, 0.006f, front + 0.03f}}, kTube), kFrame);
-            append(mesh, bow({{s * x, 0.006f, back - 0.05f}, {s * x, seatHeight_ - 0.02f, back}, {s * x, height_ - 0.05f, back - 0.065f}},
-                             kTube), kFrame);
-            append(mesh, bow({{s * x, seatHeight_ - 0.022f, front}, {s * x, seatHeight_ - 0.022f, back}}, kTube), kFrame);
+            append(mesh,
+                   bow({{s * x, 0.006f, back - 0.05f},
+                        {s * x, seatHeight_ - 0.02f, back},
+                        {s * x, height_ - 0.05f, back - 0.065f}},
+                       kTube),
+                   kFrame);
+            append(mesh, bow({{s * x, seatHeight_ - 0.022f, front}, {s * x, seatHeight_ - 0.022f, back}}, kTube),
+                   kFrame);
             append(mesh, bow({{s * x, 0.16f, front + 0.02f}, {s * x, 0.16f, back - 0.032f}}, 0.8f * kTube), kFrame);
         }
         append(mesh, bow({{-x, 0.16f, back - 0.032f}, {x, 0.16f, back - 0.032f}}, 0.8f * kTube), kFrame);
@@ -42,19 +47,31 @@ private:
         constexpr int kPieces = 16;
         const auto height = [&](float u) { return sag * (4 * (u - 0.5f) * (u - 0.5f) - 1); };
         for (const float side : {1.0f, -1.0f})
-            append(bent, gridSurface(kPieces, 2, [&](float u, float v) {
-                       const float across = side > 0 ? u : 1 - u;
-                       return Vec3((across - 0.5f) * width, height(across) + side * 0.5f * thickness, (0.5f - v) * depth);
-                   }, Vec2(width, depth)));
+            append(bent, gridSurface(
+                             kPieces, 2,
+                             [&](float u, float v) {
+                                 const float across = side > 0 ? u : 1 - u;
+                                 return Vec3((across - 0.5f) * width, height(across) + side * 0.5f * thickness,
+                                             (0.5f - v) * depth);
+                             },
+                             Vec2(width, depth)));
         for (const float side : {1.0f, -1.0f})
-            append(bent, gridSurface(kPieces, 1, [&](float u, float v) {
-                       const float across = side > 0 ? u : 1 - u;
-                       return Vec3((across - 0.5f) * width, height(across) + (v - 0.5f) * thickness, side * 0.5f * depth);
-                   }, Vec2(width, thickness)));
+            append(bent, gridSurface(
+                             kPieces, 1,
+                             [&](float u, float v) {
+                                 const float across = side > 0 ? u : 1 - u;
+                                 return Vec3((across - 0.5f) * width, height(across) + (v - 0.5f) * thickness,
+                                             side * 0.5f * depth);
+                             },
+                             Vec2(width, thickness)));
         for (const float side : {1.0f, -1.0f})
-            append(bent, gridSurface(1, 1, [&](float u, float v) {
-                       return Vec3(side * 0.5f * width, height(0) + (v - 0.5f) * thickness, side * (0.5f - u) * depth);
-                   }, Vec2(depth, thickness)));
+            append(bent, gridSurface(
+                             1, 1,
+                             [&](float u, float v) {
+                                 return Vec3(side * 0.5f * width, height(0) + (v - 0.5f) * thickness,
+                                             side * (0.5f - u) * depth);
+                             },
+                             Vec2(depth, thickness)));
         return bent;
     }
 
@@ -68,8 +85,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeChair() {
-    return std::make_unique<Chair>();
-}
+std::unique_ptr<Procedural> makeChair() { return std::make_unique<Chair>(); }
 
 }  // namespace lumi

@@ -11,9 +11,12 @@ public:
     void describe(ParameterVisitor& v) override {
         v.colour("first", first_, {.label = "First colour", .help = "Linear colour of the square at the top left."});
         v.colour("second", second_, {.label = "Second colour", .help = "Linear colour of its neighbours."});
-        v.integer("squares", squares_, {.label = "Squares", .min = 1, .max = 64,
-                                        .help = "Pairs of squares along each side of the unit of uv.",
-                                        .redo = Redo::Build});
+        v.integer("squares", squares_,
+                  {.label = "Squares",
+                   .min = 1,
+                   .max = 64,
+                   .help = "Pairs of squares along each side of the unit of uv.",
+                   .redo = Redo::Build});
     }
     TextureImage build() const override {
         const int texels = 16, side = 2 * squares_ * texels;

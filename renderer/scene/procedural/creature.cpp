@@ -219,8 +219,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeCreature() {
-    return std::make_unique<Creature>();
-}
+std::unique_ptr<Procedural> makeCreature() { return std::make_unique<Creature>(); }
 
 }  // namespace lumi

@@ -38,12 +38,8 @@ Vec3 legRoot(int leg) {
     const float side = leg % 2 == 0 ? -1.0f : 1.0f;
     return leg < 2 ? Vec3(side * 0.095f, 0.42f, 0.14f) : Vec3(side * 0.105f, 0.42f, -0.14f);
 }
-Vec3 legKnee(int leg) {
-    return legRoot(leg) + Vec3((leg % 2 == 0 ? -1 : 1) * 0.02f, -0.19f, leg < 2 ? -0.01f : 0.03f);
-}
-Vec3 legAnkle(int leg) {
-    return legKnee(leg) + Vec3(0, -0.18f, leg < 2 ? 0.01f : -0.03f);
-}
+Vec3 legKnee(int leg) { return legRoot(leg) + Vec3((leg % 2 == 0 ? -1 : 1) * 0.02f, -0.19f, leg < 2 ? -0.01f : 0.03f); }
+Vec3 legAnkle(int leg) { return legKnee(leg) + Vec3(0, -0.18f, leg < 2 ? 0.01f : -0.03f); }
 
 Vec3 restPosition(int joint) {
     if (joint < kFirstLeg) return kSpine[static_cast<size_t>(joint)].position;

@@ -115,8 +115,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeDrape() {
-    return std::make_unique<Drape>();
-}
+std::unique_ptr<Procedural> makeDrape() { return std::make_unique<Drape>(); }
 
 }  // namespace lumi

@@ -11,16 +11,21 @@ namespace lumi {
 namespace {
 
 void describeSide(ParameterVisitor& v, const char* id, const char* label, float& value, const char* help) {
-    v.number(id, value, {.label = label, .min = 1e-4, .max = 1e4, .scale = Scale::Log, .unit = "m", .help = help,
-                         .redo = Redo::Build});
+    v.number(
+        id, value,
+        {.label = label, .min = 1e-4, .max = 1e4, .scale = Scale::Log, .unit = "m", .help = help, .redo = Redo::Build});
 }
 void describeFacing(ParameterVisitor& v, Facing& facing) {
-    v.choice("facing", facing, {.label = "Facing", .options = {"x", "-x", "y", "-y", "z", "-z"},
-                                .help = "Axis that the front points along; y is a floor.", .redo = Redo::Build});
+    v.choice("facing", facing,
+             {.label = "Facing",
+              .options = {"x", "-x", "y", "-y", "z", "-z"},
+              .help = "Axis that the front points along; y is a floor.",
+              .redo = Redo::Build});
 }
 void describeMetres(ParameterVisitor& v, bool& metres) {
     v.toggle("uv-in-metres", metres,
-             {.label = "UV in metres", .help = "Texture coordinates count metres; otherwise each face spans 0 to 1.",
+             {.label = "UV in metres",
+              .help = "Texture coordinates count metres; otherwise each face spans 0 to 1.",
               .redo = Redo::Build});
 }
 
@@ -48,10 +53,20 @@ public:
         describeSide(v, "width", "Width", width_, "Full width.");
         describeSide(v, "height", "Height", height_, "Full height; for a floor its depth.");
         describeFacing(v, facing_);
-        v.integer("columns", columns_, {.label = "Columns", .min = 1, .max = 4096, .scale = Scale::Log,
-                                        .help = "Quads along the width.", .redo = Redo::Build});
-        v.integer("rows", rows_, {.label = "Rows", .min = 1, .max = 4096, .scale = Scale::Log,
-                                  .help = "Quads along the height.", .redo = Redo::Build});
+        v.integer("columns", columns_,
+                  {.label = "Columns",
+                   .min = 1,
+                   .max = 4096,
+                   .scale = Scale::Log,
+                   .help = "Quads along the width.",
+                   .redo = Redo::Build});
+        v.integer("rows", rows_,
+                  {.label = "Rows",
+                   .min = 1,
+                   .max = 4096,
+                   .scale = Scale::Log,
+                   .help = "Quads along the height.",
+                   .redo = Redo::Build});
         describeMetres(v, metres_);
     }
     ProceduralResult build() const override {
@@ -69,12 +84,21 @@ class Disk : public Procedural {
 public:
     void describe(ParameterVisitor& v) override {
         describeSide(v, "radius", "Radius", radius_, "Outer radius.");
-        v.number("inner-radius", innerRadius_, {.label = "Inner radius", .min = 0, .max = 1e4, .unit = "m",
-                                                .help = "Radius of the hole; 0 is a full disk.",
-                                                .redo = Redo::Build});
+        v.number("inner-radius", innerRadius_,
+                 {.label = "Inner radius",
+                  .min = 0,
+                  .max = 1e4,
+                  .unit = "m",
+                  .help = "Radius of the hole; 0 is a full disk.",
+                  .redo = Redo::Build});
         describeFacing(v, facing_);
-        v.integer("segments", segments_, {.label = "Segments", .min = 3, .max = 4096, .scale = Scale::Log,
-                                          .help = "Facets once around.", .redo = Redo::Build});
+        v.integer("segments", segments_,
+                  {.label = "Segments",
+                   .min = 3,
+                   .max = 4096,
+                   .scale = Scale::Log,
+                   .help = "Facets once around.",
+                   .redo = Redo::Build});
     }
     ProceduralResult build() const override {
         if (innerRadius_ >= radius_)
@@ -94,12 +118,20 @@ public:
         describeSide(v, "width", "Width", size_.x, "Full extent along X.");
         describeSide(v, "height", "Height", size_.y, "Full extent along Y.");
         describeSide(v, "depth", "Depth", size_.z, "Full extent along Z.");
-        v.number("bevel", bevel_, {.label = "Bevel", .min = 0, .max = 1e3, .unit = "m",
-                                   .help = "Radius of the rounded edges; 0 keeps them sharp.", .redo = Redo::Build});
+        v.number("bevel", bevel_,
+                 {.label = "Bevel",
+                  .min = 0,
+                  .max = 1e3,
+                  .unit = "m",
+                  .help = "Radius of the rounded edges; 0 keeps them sharp.",
+                  .redo = Redo::Build});
         v.when(bevel_ > 0, [&] {
-            v.integer("bevel-segments", bevelSegments_, {.label = "Bevel segments", .min = 1, .max = 64,
-                                                         .help = "Strips in half of a rounded edge.",
-                                                         .redo = Redo::Build});
+            v.integer("bevel-segments", bevelSegments_,
+                      {.label = "Bevel segments",
+                       .min = 1,
+                       .max = 64,
+                       .help = "Strips in half of a rounded edge.",
+                       .redo = Redo::Build});
         });
         describeMetres(v, metres_);
     }

@@ -213,11 +213,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeFruit() {
-    return std::make_unique<Fruit>();
-}
-std::unique_ptr<Procedural> makeGrapes() {
-    return std::make_unique<Grapes>();
-}
+std::unique_ptr<Procedural> makeFruit() { return std::make_unique<Fruit>(); }
+std::unique_ptr<Procedural> makeGrapes() { return std::make_unique<Grapes>(); }
 
 }  // namespace lumi

@@ -193,11 +193,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeDrinkingGlass() {
-    return std::make_unique<DrinkingGlass>();
-}
-std::unique_ptr<Procedural> makeBottle() {
-    return std::make_unique<WineBottle>();
-}
+std::unique_ptr<Procedural> makeDrinkingGlass() { return std::make_unique<DrinkingGlass>(); }
+std::unique_ptr<Procedural> makeBottle() { return std::make_unique<WineBottle>(); }
 
 }  // namespace lumi

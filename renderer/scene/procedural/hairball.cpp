@@ -14,24 +14,48 @@ namespace {
 class Hairball : public Procedural {
 public:
     void describe(ParameterVisitor& v) override {
-        v.integer("strands", strands_, {.label = "Strands", .min = 1, .max = 200000, .scale = Scale::Log,
-                                        .help = "Number of strands.", .redo = Redo::Build});
-        v.number("radius", radius_, {.label = "Radius", .min = 1e-3, .max = 1e3, .scale = Scale::Log, .unit = "m",
-                                     .help = "Distance from the centre that strands reach.", .redo = Redo::Build});
-        v.number("core", core_, {.label = "Core", .min = 0, .max = 0.95,
-                                 .help = "Share of the radius at which strands begin.", .redo = Redo::Build});
-        v.number("thickness", thickness_, {.label = "Thickness", .min = 1e-5, .max = 1, .scale = Scale::Log,
-                                           .unit = "m", .help = "Diameter at the root; tips are a quarter of it.",
-                                           .redo = Redo::Build});
-        v.number("curl", curl_, {.label = "Curl", .min = 0, .max = 4,
-                                 .help = "How far strands wander off their radius; 0 is straight.",
-                                 .redo = Redo::Build});
-        v.integer("segments", segments_, {.label = "Segments", .min = 1, .max = 64,
-                                          .help = "Straight pieces of a strand.", .redo = Redo::Build});
-        v.integer("sides", sides_, {.label = "Sides", .min = 3, .max = 16,
-                                    .help = "Facets around a strand.", .redo = Redo::Build});
-        v.integer("seed", seed_, {.label = "Seed", .min = 0, .max = 1e6, .help = "Another arrangement.",
-                                  .redo = Redo::Build});
+        v.integer("strands", strands_,
+                  {.label = "Strands",
+                   .min = 1,
+                   .max = 200000,
+                   .scale = Scale::Log,
+                   .help = "Number of strands.",
+                   .redo = Redo::Build});
+        v.number("radius", radius_,
+                 {.label = "Radius",
+                  .min = 1e-3,
+                  .max = 1e3,
+                  .scale = Scale::Log,
+                  .unit = "m",
+                  .help = "Distance from the centre that strands reach.",
+                  .redo = Redo::Build});
+        v.number("core", core_,
+                 {.label = "Core",
+                  .min = 0,
+                  .max = 0.95,
+                  .help = "Share of the radius at which strands begin.",
+                  .redo = Redo::Build});
+        v.number("thickness", thickness_,
+                 {.label = "Thickness",
+                  .min = 1e-5,
+                  .max = 1,
+                  .scale = Scale::Log,
+                  .unit = "m",
+                  .help = "Diameter at the root; tips are a quarter of it.",
+                  .redo = Redo::Build});
+        v.number("curl", curl_,
+                 {.label = "Curl",
+                  .min = 0,
+                  .max = 4,
+                  .help = "How far strands wander off their radius; 0 is straight.",
+                  .redo = Redo::Build});
+        v.integer(
+            "segments", segments_,
+            {.label = "Segments", .min = 1, .max = 64, .help = "Straight pieces of a strand.", .redo = Redo::Build});
+        v.integer("sides", sides_,
+                  {.label = "Sides", .min = 3, .max = 16, .help = "Facets around a strand.", .redo = Redo::Build});
+        v.integer("seed", seed_,
+                  {.label = "Seed", .min = 0, .max = 1e6, .help = "Another arrangement.", .redo = Redo::Build});
     }
     ProceduralResult build() const override;
 

@@ -163,7 +163,8 @@ private:
                 const Vec3 at(-halfX() + bay_ * (static_cast<float>(i) + 0.5f), y,
                               -halfZ() + bay_ * (static_cast<float>(k) + 0.5f));
                 placer.put("vault", vault, at);
-                if (light && floor == 0 && (i + k) % 2 == 0) placer.put("lantern", light, at + Vec3(0, archRadius() + 0.08f, 0));
+                if (light && floor == 0 && (i + k) % 2 == 0)
+                    placer.put("lantern", light, at + Vec3(0, archRadius() + 0.08f, 0));
             }
     }
 
@@ -172,7 +173,8 @@ private:
         Mesh mesh;
         append(mesh, roundedBox({width, height, width * 0.8f}, 0.02f, 1), kStone, placed({0, height / 2, 0}));
         append(mesh, roundedBox({width * 1.2f, 0.24f, width}, 0.015f, 1), kTrim, placed({0, 0.12f, 0}));
-        append(mesh, roundedBox({width * 1.24f, 0.13f, width * 1.1f}, 0.015f, 1), kTrim, placed({0, height - 0.065f, 0}));
+        append(mesh, roundedBox({width * 1.24f, 0.13f, width * 1.1f}, 0.015f, 1), kTrim,
+               placed({0, height - 0.065f, 0}));
         return mesh;
     }
 
@@ -188,8 +190,7 @@ private:
             append(panel, roundedBox({2 * r + 0.24f, 0.09f, thick + 0.16f}, 0.02f, 1), kTrim,
                    placed({0, bottom, 0.03f}));
         }
-        append(panel, respond(columnHeightOn(floor), columnRadius_ * 2.2f), 0,
-               placed({-bay_ / 2, 0, thick * 0.42f}));
+        append(panel, respond(columnHeightOn(floor), columnRadius_ * 2.2f), 0, placed({-bay_ / 2, 0, thick * 0.42f}));
         Mesh closed = panel;
         if (floor == 0) {
             append(closed, archDoor(spring, r), 0, placed({0, 0, -0.04f}));
@@ -280,8 +281,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeHall() {
-    return std::make_unique<Hall>();
-}
+std::unique_ptr<Procedural> makeHall() { return std::make_unique<Hall>(); }
 
 }  // namespace lumi

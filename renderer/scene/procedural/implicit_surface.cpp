@@ -9,7 +9,8 @@
 namespace lumi {
 namespace {
 
-/// Minimum that is smooth where the two are nearer than `width`: the quadratic polynomial of [Quilez 2013, "smooth minimum"].
+/// Minimum that is smooth where the two are nearer than `width`: the quadratic polynomial of [Quilez 2013, "smooth
+/// minimum"].
 float smoothMin(float a, float b, float width) {
     if (width <= 0) return std::min(a, b);
     const float h = std::max(width - std::abs(a - b), 0.0f) / width;
@@ -19,19 +20,26 @@ float smoothMin(float a, float b, float width) {
 /// Values of the field at the corners of cubes, x fastest.
 class FieldGrid {
 public:
-    FieldGrid(const std::function<float(const Vec3&)>& field, const Bounds3& box, float cell) : field_(field), low_(box.lower), cell_(cell) {
-        for (int axis = 0; axis < 3; ++axis) count_[axis] = static_cast<int>(std::ceil((box.upper[axis] - box.lower[axis]) / cell)) + 1;
-        values_.resize(static_cast<size_t>(count_[0]) * static_cast<size_t>(count_[1]) * static_cast<size_t>(count_[2]));
+    FieldGrid(const std::function<float(const Vec3&)>& field, const Bounds3& box, float cell)
+        : field_(field), low_(box.lower), cell_(cell) {
+        for (int axis = 0; axis < 3; ++axis)
+            count_[axis] = static_cast<int>(std::ceil((box.upper[axis] - box.lower[axis]) / cell)) + 1;
+        values_.resize(static_cast<size_t>(count_[0]) * static_cast<size_t>(count_[1]) *
+                       static_cast<size_t>(count_[2]));
         const int blocks = (count_[2] + kBlock - 1) / kBlock;
         parallelFor(blocks, [&](int64_t block) { fillSlab(static_cast<int>(block) * kBlock); });
     }
 
     int count(int axis) const { return count_[axis]; }
     size_t index(int x, int y, int z) const {
-        return (static_cast<size_t>(z) * static_cast<size_t>(count_[1]) + static_cast<size_t>(y)) * static_cast<size_t>(count_[0]) + static_cast<size_t>(x);
+        return (static_cast<size_t>(z) * static_cast<size_t>(count_[1]) + static_cast<size_t>(y)) *
+                   static_cast<size_t>(count_[0]) +
+               static_cast<size_t>(x);
     }
     float value(int x, int y, int z) const { return values_[index(x, y, z)]; }
-    Vec3 corner(int x, int y, int z) const { return low_ + cell_ * Vec3(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)); }
+    Vec3 corner(int x, int y, int z) const {
+        return low_ + cell_ * Vec3(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
+    }
 
 private:
     static constexpr int kBlock = 4;
@@ -71,7 +79,8 @@ bool cellPoint(const FieldGrid& grid, int x, int y, int z, Vec3& point) {
         for (int axis = 0; axis < 3; ++axis) {
             const int j = i | 1 << axis;
             if (i == j || (corner[i] < 0) == (corner[j] < 0)) continue;
-            const Vec3 a = grid.corner(x + (i & 1), y + (i >> 1 & 1), z + (i >> 2)), b = grid.corner(x + (j & 1), y + (j >> 1 & 1), z + (j >> 2));
+            const Vec3 a = grid.corner(x + (i & 1), y + (i >> 1 & 1), z + (i >> 2)),
+                       b = grid.corner(x + (j & 1), y + (j >> 1 & 1), z + (j >> 2));
             sum += glm::mix(a, b, corner[i] / (corner[i] - corner[j]));
             crossings += 1;
         }
@@ -123,8 +132,8 @@ Vec3 upward(const Vec3& gradient) {
     return length > 0 ? gradient / length : Vec3(0, 1, 0);
 }
 
-/// In creases a few triangles may face against their normals: the shortest edge of each is drawn together, which takes it
-/// away with its neighbour and leaves the surface closed.
+/// In creases a few triangles may face against their normals: the shortest edge of each is drawn together, which takes
+/// it away with its neighbour and leaves the surface closed.
 void unfold(Mesh& mesh, const std::function<Vec3(const Vec3&)>& normalAt) {
     for (int pass = 0; pass < 8; ++pass) {
         std::map<uint32_t, uint32_t> drawnTo;
@@ -132,7 +141,9 @@ void unfold(Mesh& mesh, const std::function<Vec3(const Vec3&)>& normalAt) {
             const Vec3 a = mesh.positions[t.x], face = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
             if (glm::dot(face, mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z]) >= 0) continue;
             glm::length_t k = 0;
-            const auto edge = [&](glm::length_t i) { return glm::distance(mesh.positions[t[i]], mesh.positions[t[(i + 1) % 3]]); };
+            const auto edge = [&](glm::length_t i) {
+                return glm::distance(mesh.positions[t[i]], mesh.positions[t[(i + 1) % 3]]);
+            };
             for (const glm::length_t i : {1, 2})
                 if (edge(i) < edge(k)) k = i;
             const uint32_t kept = t[k], gone = t[(k + 1) % 3];
@@ -170,7 +181,8 @@ float SoftBody::Piece::distance(const Vec3& p) const {
         return k1 > 0 ? k0 * (k0 - 1) / k1 : -std::min({b.x, b.y, b.z});
     }
     const Vec3 way = b - a;
-    const float squared = glm::dot(way, way), t = squared > 0 ? std::clamp(glm::dot(p - a, way) / squared, 0.0f, 1.0f) : 0;
+    const float squared = glm::dot(way, way),
+                t = squared > 0 ? std::clamp(glm::dot(p - a, way) / squared, 0.0f, 1.0f) : 0;
     return glm::length(p - a - t * way) - glm::mix(radiusA, radiusB, t);
 }
 
@@ -185,7 +197,8 @@ float SoftBody::distance(const Vec3& p) const {
 
 Mesh surfaceOf(const std::function<float(const Vec3&)>& field, const Bounds3& box, float cell) {
     const FieldGrid grid(field, box, cell);
-    std::vector<uint32_t> vertexOf(static_cast<size_t>(grid.count(0)) * static_cast<size_t>(grid.count(1)) * static_cast<size_t>(grid.count(2)));
+    std::vector<uint32_t> vertexOf(static_cast<size_t>(grid.count(0)) * static_cast<size_t>(grid.count(1)) *
+                                   static_cast<size_t>(grid.count(2)));
     Mesh mesh;
     for (int z = 0; z + 1 < grid.count(2); ++z)
         for (int y = 0; y + 1 < grid.count(1); ++y)

@@ -77,8 +77,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeFloorLamp() {
-    return std::make_unique<Lamp>();
-}
+std::unique_ptr<Procedural> makeFloorLamp() { return std::make_unique<Lamp>(); }
 
 }  // namespace lumi

@@ -83,9 +83,7 @@ Mesh sharpBox(const Vec3& size) {
     return mesh;
 }
 
-Mesh roundedBox(const Vec3& size, float radius, int segments) {
-    return roundedBoxDivided(size, radius, segments, 1);
-}
+Mesh roundedBox(const Vec3& size, float radius, int segments) { return roundedBoxDivided(size, radius, segments, 1); }
 
 Mesh cushionBox(const Vec3& size, float radius, float swell, int segments, int divisions) {
     Mesh mesh = roundedBoxDivided(size, radius, segments, divisions);

@@ -12,9 +12,7 @@ T catmullRom(const T& a, const T& b, const T& c, const T& d, float t) {
                    (3.0f * b - a - 3.0f * c + d) * (t * t * t));
 }
 
-Vec2 place(const ProfilePoint& p) {
-    return {p.radius, p.height};
-}
+Vec2 place(const ProfilePoint& p) { return {p.radius, p.height}; }
 
 /// Outward normal of the span from a to b in the (radius, height) plane.
 Vec2 spanNormal(const Vec2& a, const Vec2& b) {

@@ -78,10 +78,8 @@ void append(Mesh& mesh, const Mesh& part, uint32_t slot, const Mat4& place) {
     }
     if (coloured) {
         mesh.colours.resize(base, Vec4(1));
-        if (part.colours.empty())
-            mesh.colours.resize(base + count, Vec4(1));
-        else
-            mesh.colours.insert(mesh.colours.end(), part.colours.begin(), part.colours.end());
+        if (part.colours.empty()) mesh.colours.resize(base + count, Vec4(1));
+        else mesh.colours.insert(mesh.colours.end(), part.colours.begin(), part.colours.end());
     }
     // A mesh of one material names it once; from here on each triangle names its own.
     mesh.triangleMaterial.resize(mesh.triangles.size(), mesh.material);
@@ -92,9 +90,7 @@ void append(Mesh& mesh, const Mesh& part, uint32_t slot, const Mat4& place) {
     }
 }
 
-void paint(Mesh& mesh, const Vec3& colour) {
-    mesh.colours.assign(mesh.positions.size(), Vec4(colour, 1));
-}
+void paint(Mesh& mesh, const Vec3& colour) { mesh.colours.assign(mesh.positions.size(), Vec4(colour, 1)); }
 
 void turnInsideOut(Mesh& mesh) {
     for (UVec3& t : mesh.triangles) std::swap(t.y, t.z);

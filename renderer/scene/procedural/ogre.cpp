@@ -11,9 +11,11 @@ constexpr uint32_t kSkin = 0, kBone = 1, kEyes = 2, kPupils = 3;
 /// Joints, parents first; what hangs on both sides left (+X), then right.
 enum Joint { kPelvis, kChest, kHead, kArmLeft, kForearmLeft, kArmRight, kForearmRight, kJoints };
 constexpr std::array<int, kJoints> kParents{-1, kPelvis, kChest, kChest, kArmLeft, kChest, kArmRight};
-const std::array<Vec3, kJoints> kRest{Vec3(0, 0.34f, 0), Vec3(0, 0.56f, -0.02f), Vec3(0, 0.83f, 0.05f),
-                                      Vec3(0.25f, 0.72f, 0), Vec3(0.365f, 0.52f, 0.02f), Vec3(-0.25f, 0.72f, 0), Vec3(-0.365f, 0.52f, 0.02f)};
-constexpr std::array<const char*, kJoints> kNames{"pelvis", "chest", "head", "arm-left", "forearm-left", "arm-right", "forearm-right"};
+const std::array<Vec3, kJoints> kRest{Vec3(0, 0.34f, 0),          Vec3(0, 0.56f, -0.02f),     Vec3(0, 0.83f, 0.05f),
+                                      Vec3(0.25f, 0.72f, 0),      Vec3(0.365f, 0.52f, 0.02f), Vec3(-0.25f, 0.72f, 0),
+                                      Vec3(-0.365f, 0.52f, 0.02f)};
+constexpr std::array<const char*, kJoints> kNames{"pelvis",       "chest",     "head",         "arm-left",
+                                                  "forearm-left", "arm-right", "forearm-right"};
 using Influences = std::array<float, kJoints>;
 
 /// The trunk, limbs and head of a figure 1.02 high to the crown that stands on y = 0 and looks along +Z.
@@ -46,7 +48,9 @@ SoftBody bodyShape() {
         body.addEllipsoid(at(0.158f, 0.15f, -0.012f), {0.062f, 0.07f, 0.062f}, 0.03f);
         body.addEllipsoid(at(0.162f, 0.036f, 0.055f), {0.070f, 0.040f, 0.100f}, 0.03f);
         for (int toe = 0; toe < 3; ++toe)
-            body.addEllipsoid(at(0.120f + 0.042f * static_cast<float>(toe), 0.026f, 0.140f - 0.008f * static_cast<float>(toe * toe)), {0.024f, 0.026f, 0.032f}, 0.012f);
+            body.addEllipsoid(
+                at(0.120f + 0.042f * static_cast<float>(toe), 0.026f, 0.140f - 0.008f * static_cast<float>(toe * toe)),
+                {0.024f, 0.026f, 0.032f}, 0.012f);
         // The face: brow, cheek, ear, nostril, socket.
         body.addCone(at(0.012f, 0.926f, 0.248f), at(0.082f, 0.932f, 0.215f), 0.024f, 0.022f, 0.020f);
         body.addEllipsoid(at(0.070f, 0.858f, 0.225f), {0.038f, 0.030f, 0.034f}, 0.022f);
@@ -66,9 +70,11 @@ SoftBody bodyShape() {
 Influences influencesAt(const Vec3& p) {
     Influences w{};
     const float side = p.x >= 0 ? 1.0f : -1.0f, x = std::abs(p.x);
-    const float chest = glm::smoothstep(0.38f, 0.62f, p.y), head = glm::smoothstep(0.75f, 0.84f, p.y + 0.25f * p.z - 0.5f * std::max(0.0f, x - 0.1f));
+    const float chest = glm::smoothstep(0.38f, 0.62f, p.y),
+                head = glm::smoothstep(0.75f, 0.84f, p.y + 0.25f * p.z - 0.5f * std::max(0.0f, x - 0.1f));
     // Across the shoulder, then down the arm; hands hang beside the thighs, a finger's width away.
-    const float raised = glm::smoothstep(0.52f, 0.68f, p.y), inner = glm::mix(0.252f, 0.17f, raised), outer = glm::mix(0.274f, 0.255f, raised);
+    const float raised = glm::smoothstep(0.52f, 0.68f, p.y), inner = glm::mix(0.252f, 0.17f, raised),
+                outer = glm::mix(0.274f, 0.255f, raised);
     const float arm = glm::smoothstep(0.19f, 0.30f, x + 0.35f * (0.70f - p.y)) * glm::smoothstep(inner, outer, x);
     const float forearm = glm::smoothstep(0.57f, 0.47f, p.y) * arm;
     const int first = side > 0 ? kArmLeft : kArmRight;
@@ -80,16 +86,28 @@ Influences influencesAt(const Vec3& p) {
     return w;
 }
 
-/// A stout figure with tusks and horns, all of it round: a skinned mesh over seven joints that breathes (a morph target),
-/// looks about and flexes its arms in one loop.
+/// A stout figure with tusks and horns, all of it round: a skinned mesh over seven joints that breathes (a morph
+/// target), looks about and flexes its arms in one loop.
 class Ogre final : public Procedural {
 public:
     void describe(ParameterVisitor& v) override {
         describeLength(v, "height", height_, "Height", 0.05, 20, "From the soles to the crown, without the horns");
-        v.number("period", period_, {.label = "Period", .min = 0.1, .max = 60, .unit = "s", .help = "Time of one loop", .redo = Redo::Build});
-        v.number("cell", cell_, {.label = "Cell", .min = 0.004, .max = 0.05, .scale = Scale::Log,
-                                 .help = "Side of the triangles as a share of the height", .redo = Redo::Build});
-        v.number("bumps", bumps_, {.label = "Bumps", .min = 0, .max = 2, .help = "Height of the skin's relief as a multiple of the design's", .redo = Redo::Build});
+        v.number(
+            "period", period_,
+            {.label = "Period", .min = 0.1, .max = 60, .unit = "s", .help = "Time of one loop", .redo = Redo::Build});
+        v.number("cell", cell_,
+                 {.label = "Cell",
+                  .min = 0.004,
+                  .max = 0.05,
+                  .scale = Scale::Log,
+                  .help = "Side of the triangles as a share of the height",
+                  .redo = Redo::Build});
+        v.number("bumps", bumps_,
+                 {.label = "Bumps",
+                  .min = 0,
+                  .max = 2,
+                  .help = "Height of the skin's relief as a multiple of the design's",
+                  .redo = Redo::Build});
         v.colour("back", back_, {.label = "Back", .help = "Colour of the upper side", .redo = Redo::Build});
         v.colour("belly", belly_, {.label = "Belly", .help = "Colour of the underside", .redo = Redo::Build});
         describeSeed(v, seed_);
@@ -98,12 +116,14 @@ public:
     ProceduralResult build() const override {
         ProceduralResult result;
         result.slots = {opaqueSlot("skin", {1, 1, 1}, 0.18f), opaqueSlot("bone", {0.82f, 0.74f, 0.58f}, 0.2f),
-                        opaqueSlot("eyes", {0.85f, 0.70f, 0.25f}, 0.08f), opaqueSlot("pupils", {0.01f, 0.01f, 0.01f}, 0.05f)};
+                        opaqueSlot("eyes", {0.85f, 0.70f, 0.25f}, 0.08f),
+                        opaqueSlot("pupils", {0.01f, 0.01f, 0.01f}, 0.05f)};
         Mesh mesh = skin();
         const size_t skinCount = mesh.positions.size();
         addFace(mesh);
         std::vector<Influences> influences;
-        for (size_t i = 0; i < mesh.positions.size(); ++i) influences.push_back(i < skinCount ? influencesAt(mesh.positions[i]) : only(kHead));
+        for (size_t i = 0; i < mesh.positions.size(); ++i)
+            influences.push_back(i < skinCount ? influencesAt(mesh.positions[i]) : only(kHead));
         addBreath(mesh);
         for (Vec3& p : mesh.positions) p *= scale();
         for (Vec3& p : mesh.morphTargets[0].positions) p *= scale();
@@ -140,9 +160,12 @@ private:
         Mesh mesh = surfaceOf(field, {{-0.48f, -0.03f, -0.28f}, {0.48f, 1.06f, 0.36f}}, cell_);
         for (size_t i = 0; i < mesh.positions.size(); ++i) {
             const Vec3 p = mesh.positions[i];
-            const float up = -0.7f * mesh.normals[i].z + 0.5f * mesh.normals[i].y + 0.3f * valueNoise(p * 8.0f, seed + 2);
-            const float spots = glm::smoothstep(0.35f, 0.55f, valueNoise(p * 15.0f, seed + 3)) * glm::smoothstep(-0.2f, 0.4f, up);
-            mesh.colours.push_back(Vec4(glm::mix(glm::mix(belly_, back_, glm::smoothstep(-0.6f, 0.25f, up)), back_ * 0.45f, 0.7f * spots), 1));
+            const float up =
+                -0.7f * mesh.normals[i].z + 0.5f * mesh.normals[i].y + 0.3f * valueNoise(p * 8.0f, seed + 2);
+            const float spots =
+                glm::smoothstep(0.35f, 0.55f, valueNoise(p * 15.0f, seed + 3)) * glm::smoothstep(-0.2f, 0.4f, up);
+            mesh.colours.push_back(Vec4(
+                glm::mix(glm::mix(belly_, back_, glm::smoothstep(-0.6f, 0.25f, up)), back_ * 0.45f, 0.7f * spots), 1));
         }
         mesh.triangleMaterial.assign(mesh.triangles.size(), kSkin);
         return mesh;
@@ -169,8 +192,11 @@ private:
             const Vec3 eye = at(0.047f, 0.891f, 0.240f);
             ball(eye, 0.026f, kEyes);
             ball(eye + at(-0.002f, -0.002f, 0.0145f), 0.0128f, kPupils);
-            horn({at(0.056f, 0.795f, 0.262f), at(0.062f, 0.830f, 0.290f), at(0.074f, 0.872f, 0.298f)}, {0.014f, 0.012f, 0.002f});
-            horn({at(0.060f, 0.985f, 0.130f), at(0.115f, 1.040f, 0.115f), at(0.135f, 1.105f, 0.150f), at(0.110f, 1.150f, 0.195f)}, {0.030f, 0.025f, 0.016f, 0.002f});
+            horn({at(0.056f, 0.795f, 0.262f), at(0.062f, 0.830f, 0.290f), at(0.074f, 0.872f, 0.298f)},
+                 {0.014f, 0.012f, 0.002f});
+            horn({at(0.060f, 0.985f, 0.130f), at(0.115f, 1.040f, 0.115f), at(0.135f, 1.105f, 0.150f),
+                  at(0.110f, 1.150f, 0.195f)},
+                 {0.030f, 0.025f, 0.016f, 0.002f});
         }
     }
 
@@ -188,7 +214,8 @@ private:
         Mesh rest = mesh;
         computeNormals(rest);
         computeNormals(swollen);
-        for (size_t i = 0; i < mesh.positions.size(); ++i) breath.normals.push_back(swollen.normals[i] - rest.normals[i]);
+        for (size_t i = 0; i < mesh.positions.size(); ++i)
+            breath.normals.push_back(swollen.normals[i] - rest.normals[i]);
         mesh.morphTargets.push_back(std::move(breath));
     }
 
@@ -199,7 +226,8 @@ private:
             Node node;
             node.name = kNames[j];
             node.parent = kParents[j];
-            node.local.translation = (kRest[j] - (node.parent < 0 ? Vec3(0) : kRest[static_cast<size_t>(node.parent)])) * scale();
+            node.local.translation =
+                (kRest[j] - (node.parent < 0 ? Vec3(0) : kRest[static_cast<size_t>(node.parent)])) * scale();
             if (joint == kPelvis) node.morphWeights = {0};
             result.nodes.push_back(std::move(node));
             skin.joints.push_back(joint);
@@ -213,7 +241,8 @@ private:
         constexpr int kKeys = 48;
         Animation loop;
         loop.duration = period_;
-        const auto channel = [&](int node, AnimatedProperty property, int components, const std::function<std::vector<float>(float)>& at) {
+        const auto channel = [&](int node, AnimatedProperty property, int components,
+                                 const std::function<std::vector<float>(float)>& at) {
             AnimationChannel made;
             made.node = node, made.property = property, made.components = components;
             for (int k = 0; k <= kKeys; ++k) {
@@ -226,12 +255,14 @@ private:
         const auto turn = [&](int joint, const std::function<Vec3(float)>& eulerDeg) {
             channel(joint, AnimatedProperty::Rotation, 4, [&](float w) {
                 const Vec3 e = eulerDeg(w);
-                const Quat q = glm::angleAxis(radians(e.y), Vec3(0, 1, 0)) * glm::angleAxis(radians(e.x), Vec3(1, 0, 0)) *
+                const Quat q = glm::angleAxis(radians(e.y), Vec3(0, 1, 0)) *
+                               glm::angleAxis(radians(e.x), Vec3(1, 0, 0)) *
                                glm::angleAxis(radians(e.z), Vec3(0, 0, 1));
                 return std::vector<float>{q.x, q.y, q.z, q.w};
             });
         };
-        channel(kPelvis, AnimatedProperty::MorphWeights, 1, [](float w) { return std::vector<float>{0.5f + 0.5f * std::sin(2 * w)}; });
+        channel(kPelvis, AnimatedProperty::MorphWeights, 1,
+                [](float w) { return std::vector<float>{0.5f + 0.5f * std::sin(2 * w)}; });
         turn(kChest, [](float w) { return Vec3(2.5f * std::sin(2 * w), 9 * std::sin(w), 3 * std::cos(w)); });
         turn(kHead, [](float w) { return Vec3(7 * std::sin(2 * w + 1), 24 * std::sin(w - 0.5f), -6 * std::sin(w)); });
         turn(kArmLeft, [](float w) { return Vec3(-14 * std::sin(w), 0, 7 + 6 * std::cos(w)); });
@@ -248,8 +279,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeOgre() {
-    return std::make_unique<Ogre>();
-}
+std::unique_ptr<Procedural> makeOgre() { return std::make_unique<Ogre>(); }
 
 }  // namespace lumi

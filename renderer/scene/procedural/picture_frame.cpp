@@ -53,8 +53,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makePictureFrame() {
-    return std::make_unique<PictureFrame>();
-}
+std::unique_ptr<Procedural> makePictureFrame() { return std::make_unique<PictureFrame>(); }
 
 }  // namespace lumi

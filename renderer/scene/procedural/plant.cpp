@@ -120,8 +120,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makePlant() {
-    return std::make_unique<Plant>();
-}
+std::unique_ptr<Procedural> makePlant() { return std::make_unique<Plant>(); }
 
 }  // namespace lumi

@@ -21,9 +21,9 @@ struct MaterialSlot {
 struct ProceduralPart {
     std::string name;  ///< the instance is named "<instance>/<name>", or just "<instance>" when empty
     std::shared_ptr<const Mesh> mesh;
-    int node = -1;     ///< index into ProceduralResult::nodes; -1 is the asset's own origin
-    int skin = -1;     ///< index into ProceduralResult::skins
-    int slot = -1;     ///< replaces the mesh's own slots when >= 0, so that parts sharing a mesh may differ
+    int node = -1;  ///< index into ProceduralResult::nodes; -1 is the asset's own origin
+    int skin = -1;  ///< index into ProceduralResult::skins
+    int slot = -1;  ///< replaces the mesh's own slots when >= 0, so that parts sharing a mesh may differ
 };
 
 /// What a generator makes, in the asset's own space (+Y up, metres). Nodes stand parents first, parent -1 is the
@@ -58,8 +58,8 @@ public:
 };
 
 struct ProceduralEntry {
-    const char* name;   ///< kebab-case, the key in the scene file
-    const char* help;   ///< one sentence
+    const char* name;  ///< kebab-case, the key in the scene file
+    const char* help;  ///< one sentence
     std::unique_ptr<Procedural> (*make)();
 };
 struct ProceduralTextureEntry {

@@ -108,8 +108,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeRoomShell() {
-    return std::make_unique<RoomShell>();
-}
+std::unique_ptr<Procedural> makeRoomShell() { return std::make_unique<RoomShell>(); }
 
 }  // namespace lumi

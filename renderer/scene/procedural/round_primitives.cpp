@@ -12,16 +12,33 @@ namespace {
 
 /// Parameters that several shapes share.
 void describeRadius(ParameterVisitor& v, float& radius) {
-    v.number("radius", radius, {.label = "Radius", .min = 1e-4, .max = 1e4, .scale = Scale::Log, .unit = "m",
-                                .help = "Distance of the surface from its axis or centre.", .redo = Redo::Build});
+    v.number("radius", radius,
+             {.label = "Radius",
+              .min = 1e-4,
+              .max = 1e4,
+              .scale = Scale::Log,
+              .unit = "m",
+              .help = "Distance of the surface from its axis or centre.",
+              .redo = Redo::Build});
 }
 void describeHeight(ParameterVisitor& v, float& height) {
-    v.number("height", height, {.label = "Height", .min = 1e-4, .max = 1e4, .scale = Scale::Log, .unit = "m",
-                                .help = "Extent along Y; the centre is the origin.", .redo = Redo::Build});
+    v.number("height", height,
+             {.label = "Height",
+              .min = 1e-4,
+              .max = 1e4,
+              .scale = Scale::Log,
+              .unit = "m",
+              .help = "Extent along Y; the centre is the origin.",
+              .redo = Redo::Build});
 }
 void describeSegments(ParameterVisitor& v, int& segments) {
-    v.integer("segments", segments, {.label = "Segments", .min = 3, .max = 4096, .scale = Scale::Log,
-                                     .help = "Facets once around the axis.", .redo = Redo::Build});
+    v.integer("segments", segments,
+              {.label = "Segments",
+               .min = 3,
+               .max = 4096,
+               .scale = Scale::Log,
+               .help = "Facets once around the axis.",
+               .redo = Redo::Build});
 }
 void describeCaps(ParameterVisitor& v, bool& caps) {
     v.toggle("caps", caps, {.label = "Caps", .help = "Closes the ends with flat disks.", .redo = Redo::Build});
@@ -32,8 +49,13 @@ public:
     void describe(ParameterVisitor& v) override {
         describeRadius(v, radius_);
         describeSegments(v, segments_);
-        v.integer("rings", rings_, {.label = "Rings", .min = 2, .max = 2048, .scale = Scale::Log,
-                                    .help = "Facets from pole to pole.", .redo = Redo::Build});
+        v.integer("rings", rings_,
+                  {.label = "Rings",
+                   .min = 2,
+                   .max = 2048,
+                   .scale = Scale::Log,
+                   .help = "Facets from pole to pole.",
+                   .redo = Redo::Build});
     }
     ProceduralResult build() const override { return singleMesh(sphereMesh(radius_, segments_, rings_)); }
 
@@ -64,8 +86,13 @@ class Cone : public Procedural {
 public:
     void describe(ParameterVisitor& v) override {
         describeRadius(v, radius_);
-        v.number("top-radius", topRadius_, {.label = "Top radius", .min = 0, .max = 1e4, .unit = "m",
-                                            .help = "Radius at the upper end; 0 is a point.", .redo = Redo::Build});
+        v.number("top-radius", topRadius_,
+                 {.label = "Top radius",
+                  .min = 0,
+                  .max = 1e4,
+                  .unit = "m",
+                  .help = "Radius at the upper end; 0 is a point.",
+                  .redo = Redo::Build});
         describeHeight(v, height_);
         describeSegments(v, segments_);
         describeCaps(v, caps_);
@@ -84,13 +111,22 @@ class Torus : public Procedural {
 public:
     void describe(ParameterVisitor& v) override {
         describeRadius(v, radius_);
-        v.number("tube-radius", tubeRadius_, {.label = "Tube radius", .min = 1e-4, .max = 1e4, .scale = Scale::Log,
-                                              .unit = "m", .help = "Radius of the tube; below the ring's radius.",
-                                              .redo = Redo::Build});
+        v.number("tube-radius", tubeRadius_,
+                 {.label = "Tube radius",
+                  .min = 1e-4,
+                  .max = 1e4,
+                  .scale = Scale::Log,
+                  .unit = "m",
+                  .help = "Radius of the tube; below the ring's radius.",
+                  .redo = Redo::Build});
         describeSegments(v, segments_);
-        v.integer("tube-segments", tubeSegments_, {.label = "Tube segments", .min = 3, .max = 2048,
-                                                   .scale = Scale::Log, .help = "Facets once around the tube.",
-                                                   .redo = Redo::Build});
+        v.integer("tube-segments", tubeSegments_,
+                  {.label = "Tube segments",
+                   .min = 3,
+                   .max = 2048,
+                   .scale = Scale::Log,
+                   .help = "Facets once around the tube.",
+                   .redo = Redo::Build});
     }
     ProceduralResult build() const override {
         if (tubeRadius_ >= radius_)

@@ -56,8 +56,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeRug() {
-    return std::make_unique<Rug>();
-}
+std::unique_ptr<Procedural> makeRug() { return std::make_unique<Rug>(); }
 
 }  // namespace lumi

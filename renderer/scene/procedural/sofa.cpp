@@ -96,11 +96,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeSofa() {
-    return std::make_unique<Sofa>();
-}
-std::unique_ptr<Procedural> makePillow() {
-    return std::make_unique<Pillow>();
-}
+std::unique_ptr<Procedural> makeSofa() { return std::make_unique<Sofa>(); }
+std::unique_ptr<Procedural> makePillow() { return std::make_unique<Pillow>(); }
 
 }  // namespace lumi

@@ -11,12 +11,12 @@ struct PenStroke {
     Vec2 from, to;
 };
 
-/// Letters drawn by a pen of constant width: Latin letters, digits, `. , - : ' ( ) /` and space. Other characters are left
-/// out. y runs up; the baseline is y = 0, capitals are 1 high, small letters 0.625, and descenders reach -0.375.
+/// Letters drawn by a pen of constant width: Latin letters, digits, `. , - : ' ( ) /` and space. Other characters are
+/// left out. y runs up; the baseline is y = 0, capitals are 1 high, small letters 0.625, and descenders reach -0.375.
 namespace stroke_font {
 
-/// Adds the strokes of `text`, its capitals `height` high, from `at` on the baseline to the right; returns where the next
-/// letter would stand.
+/// Adds the strokes of `text`, its capitals `height` high, from `at` on the baseline to the right; returns where the
+/// next letter would stand.
 float write(std::string_view text, Vec2 at, float height, std::vector<PenStroke>& strokes);
 float widthOf(std::string_view text, float height);
 

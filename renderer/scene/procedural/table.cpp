@@ -74,8 +74,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeTable() {
-    return std::make_unique<Table>();
-}
+std::unique_ptr<Procedural> makeTable() { return std::make_unique<Table>(); }
 
 }  // namespace lumi

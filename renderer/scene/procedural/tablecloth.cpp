@@ -67,8 +67,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeTablecloth() {
-    return std::make_unique<Tablecloth>();
-}
+std::unique_ptr<Procedural> makeTablecloth() { return std::make_unique<Tablecloth>(); }
 
 }  // namespace lumi

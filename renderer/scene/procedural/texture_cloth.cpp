@@ -147,11 +147,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<ProceduralTexture> makeWeave() {
-    return std::make_unique<Weave>();
-}
-std::unique_ptr<ProceduralTexture> makeCarpet() {
-    return std::make_unique<Carpet>();
-}
+std::unique_ptr<ProceduralTexture> makeWeave() { return std::make_unique<Weave>(); }
+std::unique_ptr<ProceduralTexture> makeCarpet() { return std::make_unique<Carpet>(); }
 
 }  // namespace lumi

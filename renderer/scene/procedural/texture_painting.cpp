@@ -40,12 +40,9 @@ public:
 private:
     Vec3 picture(float u, float v, uint32_t seed) const {
         switch (style_) {
-            case PaintingStyle::Hills:
-                return hills(u, v, seed);
-            case PaintingStyle::Discs:
-                return discs(u, v, seed);
-            default:
-                return fields(u, v, seed);
+            case PaintingStyle::Hills: return hills(u, v, seed);
+            case PaintingStyle::Discs: return discs(u, v, seed);
+            default: return fields(u, v, seed);
         }
     }
 
@@ -134,8 +131,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<ProceduralTexture> makePainting() {
-    return std::make_unique<Painting>();
-}
+std::unique_ptr<ProceduralTexture> makePainting() { return std::make_unique<Painting>(); }
 
 }  // namespace lumi

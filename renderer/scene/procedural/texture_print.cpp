@@ -13,10 +13,14 @@ namespace {
 
 /// What the sheet says, again and again.
 constexpr std::string_view kText =
-    "A picture that moves is judged twice: once for what each frame shows, and once for what the eye sees between two frames. "
-    "Thin lines are the hardest part of both. A line that is narrower than a pixel is met by one ray and missed by the next, so "
-    "that letters lose their stems, rules break into dashes, and what stood still on paper begins to crawl on the screen. "
-    "More rays help slowly, a longer memory helps at the price of a blur. The third way is to keep the points that were "
+    "A picture that moves is judged twice: once for what each frame shows, and once for what the eye sees between two "
+    "frames. "
+    "Thin lines are the hardest part of both. A line that is narrower than a pixel is met by one ray and missed by the "
+    "next, so "
+    "that letters lose their stems, rules break into dashes, and what stood still on paper begins to crawl on the "
+    "screen. "
+    "More rays help slowly, a longer memory helps at the price of a blur. The third way is to keep the points that "
+    "were "
     "looked at, to carry them along with the surface they lie on, and to ask only whether they can still be seen. "
     "Such points do not tremble: a stem that was met stays met while the sheet slides by. What they cost is an uneven "
     "spread over the pixels, and edges that are a little too thick or too thin until somebody looks again. "
@@ -76,7 +80,8 @@ void addHatching(Vec2 low, float side, float angle, float pitch, std::vector<Pen
             const float a = (-0.5f * side - from) / rate, b = (0.5f * side - from) / rate;
             begin = std::max(begin, std::min(a, b)), end = std::min(end, std::max(a, b));
         }
-        if (begin < end) strokes.push_back({centre + across * offset + way * begin, centre + across * offset + way * end});
+        if (begin < end)
+            strokes.push_back({centre + across * offset + way * begin, centre + across * offset + way * end});
     }
 }
 
@@ -84,7 +89,8 @@ void addHatching(Vec2 low, float side, float angle, float pitch, std::vector<Pen
 void addWaves(Vec2 low, Vec2 size, std::vector<PenStroke>& strokes) {
     constexpr int kLines = 26, kSteps = 160;
     for (int line = 0; line < kLines; ++line) {
-        const float y = low.y + size.y * (static_cast<float>(line) + 0.5f) / kLines, waves = 3 + static_cast<float>(line);
+        const float y = low.y + size.y * (static_cast<float>(line) + 0.5f) / kLines,
+                    waves = 3 + static_cast<float>(line);
         const auto at = [&](int i) {
             const float x = static_cast<float>(i) / kSteps;
             return Vec2(low.x + size.x * x, y + 0.42f * size.y / kLines * std::sin(2 * kPi * waves * x));
@@ -94,7 +100,8 @@ void addWaves(Vec2 low, Vec2 size, std::vector<PenStroke>& strokes) {
 }
 
 /// Lines of text between two margins, from `top` downwards to `bottom`, words broken at spaces only.
-void addColumn(float left, float right, float top, float bottom, float height, size_t& place, std::vector<PenStroke>& strokes) {
+void addColumn(float left, float right, float top, float bottom, float height, size_t& place,
+               std::vector<PenStroke>& strokes) {
     for (float y = top - height; y > bottom; y -= 1.75f * height) {
         float x = left;
         for (;;) {
@@ -124,7 +131,8 @@ public:
         for (const PenLayer& layer : layout()) draw(layer, layer.accent ? accent : ink);
         if (settings_.map == TextureMap::Colour) return colourMap(ink, accent);
         return renderPattern("print", settings_.size, settings_.map, [&](float u, float v) {
-            const auto at = static_cast<size_t>(v * static_cast<float>(side)) * side + static_cast<size_t>(u * static_cast<float>(side));
+            const auto at = static_cast<size_t>(v * static_cast<float>(side)) * side +
+                            static_cast<size_t>(u * static_cast<float>(side));
             const float black = static_cast<float>(ink[at]) / 255, red = static_cast<float>(accent[at]) / 255;
             SurfaceTexel t;
             t.height = -0.0004f * std::max(black, red);
@@ -134,9 +142,12 @@ public:
     }
 
 private:
-    Vec3 colourAt(float black, float red) const { return srgbFromLinear(glm::mix(glm::mix(paper_, accent_, red), ink_, black)); }
+    Vec3 colourAt(float black, float red) const {
+        return srgbFromLinear(glm::mix(glm::mix(paper_, accent_, red), ink_, black));
+    }
 
-    /// As renderPattern() has it; nearly every texel is paper, or has one ink alone, so that few colours are worked out.
+    /// As renderPattern() has it; nearly every texel is paper, or has one ink alone, so that few colours are worked
+    /// out.
     TextureImage colourMap(const std::vector<uint8_t>& ink, const std::vector<uint8_t>& accent) const {
         std::array<Vec3, 256> black, red;
         for (size_t i = 0; i < 256; ++i) {
@@ -151,9 +162,13 @@ private:
         parallelRanges(static_cast<int64_t>(ink.size()), 1 << 16, [&](int64_t begin, int64_t end) {
             for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
                 const bool both = ink[i] > 0 && accent[i] > 0;
-                const Vec3 colour = both ? colourAt(static_cast<float>(ink[i]) / 255, static_cast<float>(accent[i]) / 255)
-                                         : ink[i] > 0 ? black[ink[i]] : red[accent[i]];
-                for (size_t c = 0; c < 3; ++c) bytes[4 * i + c] = static_cast<uint8_t>(255 * std::clamp(colour[static_cast<int>(c)], 0.0f, 1.0f) + 0.5f);
+                const Vec3 colour =
+                    both         ? colourAt(static_cast<float>(ink[i]) / 255, static_cast<float>(accent[i]) / 255)
+                    : ink[i] > 0 ? black[ink[i]]
+                                 : red[accent[i]];
+                for (size_t c = 0; c < 3; ++c)
+                    bytes[4 * i + c] =
+                        static_cast<uint8_t>(255 * std::clamp(colour[static_cast<int>(c)], 0.0f, 1.0f) + 0.5f);
                 bytes[4 * i + 3] = 255;
             }
         });
@@ -162,8 +177,8 @@ private:
 
     /// Which paragraph the text begins with is the seed's.
     std::vector<PenLayer> layout() const {
-        PenLayer heading{0.0062f, true, {}}, title{0.0034f, false, {}}, body{0.0011f, false, {}}, small{0.0008f, false, {}},
-            rules{0.0012f, false, {}}, hair{0.0007f, false, {}}, red{0.0009f, true, {}};
+        PenLayer heading{0.0062f, true, {}}, title{0.0034f, false, {}}, body{0.0011f, false, {}},
+            small{0.0008f, false, {}}, rules{0.0012f, false, {}}, hair{0.0007f, false, {}}, red{0.0009f, true, {}};
         stroke_font::write("Fine print", {0.05f, 0.895f}, 0.056f, heading.strokes);
         stroke_font::write("a proof sheet of lines and letters", {0.052f, 0.852f}, 0.018f, title.strokes);
         stroke_font::write("No. 17", {0.835f, 0.905f}, 0.03f, title.strokes);
@@ -175,10 +190,12 @@ private:
         addColumn(0.67f, 0.95f, 0.56f, 0.31f, 0.0070f, place, small.strokes);
         addStar({0.17f, 0.70f}, 0.115f, 96, hair.strokes);
         addRosette({0.42f, 0.70f}, 0.12f, 14, red.strokes);
-        for (int i = 1; i <= 30; ++i) addRing({0.66f, 0.70f}, 0.118f * std::sqrt(static_cast<float>(i) / 30), hair.strokes);
+        for (int i = 1; i <= 30; ++i)
+            addRing({0.66f, 0.70f}, 0.118f * std::sqrt(static_cast<float>(i) / 30), hair.strokes);
         for (int i = 0; i < 4; ++i)
-            addHatching({0.80f + 0.078f * static_cast<float>(i % 2), 0.70f - 0.078f * static_cast<float>(i / 2) + 0.022f}, 0.07f,
-                        0.3f + 0.6f * static_cast<float>(i), 0.0022f + 0.0012f * static_cast<float>(i), hair.strokes);
+            addHatching(
+                {0.80f + 0.078f * static_cast<float>(i % 2), 0.70f - 0.078f * static_cast<float>(i / 2) + 0.022f},
+                0.07f, 0.3f + 0.6f * static_cast<float>(i), 0.0022f + 0.0012f * static_cast<float>(i), hair.strokes);
         addWaves({0.67f, 0.06f}, {0.28f, 0.23f}, red.strokes);
         return {heading, title, body, small, rules, hair, red};
     }
@@ -189,7 +206,8 @@ private:
         const float half = 0.5f * layer.width * weight_ * side, reach = half + 1;
         parallelRanges(settings_.size, std::max(16, settings_.size / 32), [&](int64_t begin, int64_t end) {
             for (const PenStroke& stroke : layer.strokes) {
-                const Vec2 a(stroke.from.x * side, (1 - stroke.from.y) * side), b(stroke.to.x * side, (1 - stroke.to.y) * side);
+                const Vec2 a(stroke.from.x * side, (1 - stroke.from.y) * side),
+                    b(stroke.to.x * side, (1 - stroke.to.y) * side);
                 const int top = std::max(static_cast<int>(begin), static_cast<int>(std::min(a.y, b.y) - reach));
                 const int bottom = std::min(static_cast<int>(end), static_cast<int>(std::max(a.y, b.y) + reach) + 1);
                 for (int y = top; y < bottom; ++y) drawRow(a, b, half, y, coverage);
@@ -203,15 +221,18 @@ private:
         // Along the row only what lies near the piece of the stroke at this height.
         float left = std::min(a.x, b.x), right = std::max(a.x, b.x);
         if (std::abs(way.y) > 1e-3f && std::abs(way.x) > 2 * (half + 1)) {
-            const float slope = way.x / way.y, spread = (half + 1) * std::sqrt(1 + slope * slope), x = a.x + slope * (row - a.y);
+            const float slope = way.x / way.y, spread = (half + 1) * std::sqrt(1 + slope * slope),
+                        x = a.x + slope * (row - a.y);
             left = std::max(left, x - spread), right = std::min(right, x + spread);
         }
-        const int first = std::max(0, static_cast<int>(left - half - 1)), last = std::min(settings_.size - 1, static_cast<int>(right + half + 1));
+        const int first = std::max(0, static_cast<int>(left - half - 1)),
+                  last = std::min(settings_.size - 1, static_cast<int>(right + half + 1));
         for (int x = first; x <= last; ++x) {
             const Vec2 p = Vec2(static_cast<float>(x) + 0.5f, row) - a;
             const float t = std::clamp(glm::dot(p, way) / squared, 0.0f, 1.0f);
             const float cover = std::clamp(half + 0.5f - glm::length(p - t * way), 0.0f, 1.0f);
-            uint8_t& texel = coverage[static_cast<size_t>(y) * static_cast<size_t>(settings_.size) + static_cast<size_t>(x)];
+            uint8_t& texel =
+                coverage[static_cast<size_t>(y) * static_cast<size_t>(settings_.size) + static_cast<size_t>(x)];
             texel = std::max(texel, static_cast<uint8_t>(std::lround(255 * cover)));
         }
     }
@@ -223,8 +244,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<ProceduralTexture> makePrint() {
-    return std::make_unique<Print>();
-}
+std::unique_ptr<ProceduralTexture> makePrint() { return std::make_unique<Print>(); }
 
 }  // namespace lumi

@@ -155,14 +155,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<ProceduralTexture> makeTiles() {
-    return std::make_unique<Tiles>();
-}
-std::unique_ptr<ProceduralTexture> makeMasonry() {
-    return std::make_unique<Masonry>();
-}
-std::unique_ptr<ProceduralTexture> makePlaster() {
-    return std::make_unique<Plaster>();
-}
+std::unique_ptr<ProceduralTexture> makeTiles() { return std::make_unique<Tiles>(); }
+std::unique_ptr<ProceduralTexture> makeMasonry() { return std::make_unique<Masonry>(); }
+std::unique_ptr<ProceduralTexture> makePlaster() { return std::make_unique<Plaster>(); }
 
 }  // namespace lumi

@@ -9,9 +9,7 @@
 namespace lumi {
 namespace {
 
-uint8_t byteFrom(float x) {
-    return static_cast<uint8_t>(std::lround(255 * std::clamp(x, 0.0f, 1.0f)));
-}
+uint8_t byteFrom(float x) { return static_cast<uint8_t>(std::lround(255 * std::clamp(x, 0.0f, 1.0f))); }
 
 void writeTexel(uint8_t* out, const Vec3& v) {
     for (int c = 0; c < 3; ++c) out[c] = byteFrom(v[c]);

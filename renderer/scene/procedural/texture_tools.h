@@ -42,13 +42,12 @@ float tiledFractal(float x, float y, int periodX, int periodY, int octaves, uint
 
 /// A random number in [0, 1) for an integer place.
 inline float randomAt(int x, int y, uint32_t seed) {
-    const uint32_t place = static_cast<uint32_t>(x) * 0x9e3779b1u ^ pcgHash(static_cast<uint32_t>(y) + seed * 0x85ebca77u);
+    const uint32_t place =
+        static_cast<uint32_t>(x) * 0x9e3779b1u ^ pcgHash(static_cast<uint32_t>(y) + seed * 0x85ebca77u);
     return unitFloat(pcgHash(place));
 }
 
-inline float fract(float x) {
-    return x - std::floor(x);
-}
+inline float fract(float x) { return x - std::floor(x); }
 
 /// A colour parameter of a pattern.
 void describeColour(ParameterVisitor& v, const char* id, Vec3& value, const char* label, const char* help);
@@ -64,6 +63,6 @@ std::unique_ptr<ProceduralTexture> makePlaster();   ///< texture_stone.cpp
 std::unique_ptr<ProceduralTexture> makeWeave();     ///< texture_cloth.cpp
 std::unique_ptr<ProceduralTexture> makeCarpet();    ///< texture_cloth.cpp: a knotted rug, drawn once over 0 to 1
 std::unique_ptr<ProceduralTexture> makePainting();  ///< texture_painting.cpp
-std::unique_ptr<ProceduralTexture> makePrint();     ///< texture_print.cpp: fine print and line art, drawn once over 0 to 1
+std::unique_ptr<ProceduralTexture> makePrint();  ///< texture_print.cpp: fine print and line art, drawn once over 0 to 1
 
 }  // namespace lumi

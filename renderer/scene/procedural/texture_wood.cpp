@@ -72,8 +72,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<ProceduralTexture> makeWood() {
-    return std::make_unique<Wood>();
-}
+std::unique_ptr<ProceduralTexture> makeWood() { return std::make_unique<Wood>(); }
 
 }  // namespace lumi

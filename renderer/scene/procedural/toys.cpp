@@ -120,11 +120,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeGear() {
-    return std::make_unique<Gear>();
-}
-std::unique_ptr<Procedural> makeSpinningTop() {
-    return std::make_unique<SpinningTop>();
-}
+std::unique_ptr<Procedural> makeGear() { return std::make_unique<Gear>(); }
+std::unique_ptr<Procedural> makeSpinningTop() { return std::make_unique<SpinningTop>(); }
 
 }  // namespace lumi

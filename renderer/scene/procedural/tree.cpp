@@ -23,8 +23,12 @@ public:
         describeLength(v, "leaf-width", leafWidth_, "Leaf width", 0.002, 1, "At the widest");
         describeCount(v, "leaves", leaves_, "Leaves", 0, 200000, "Altogether");
         describeCount(v, "limbs", limbs_, "Limbs", 2, 24, "That the trunk forks into");
-        v.number("bare", bare_, {.label = "Bare", .min = 0.05, .max = 0.8,
-                                 .help = "Share of the height below the first limb", .redo = Redo::Build});
+        v.number("bare", bare_,
+                 {.label = "Bare",
+                  .min = 0.05,
+                  .max = 0.8,
+                  .help = "Share of the height below the first limb",
+                  .redo = Redo::Build});
         describeSeed(v, seed_);
     }
 
@@ -50,7 +54,8 @@ private:
         const float bole = height_ * bare_, top = height_ * glm::mix(bare_, 1.0f, 0.55f);
         const Vec3 lean(dice.range(-0.04f, 0.04f) * height_, 0, dice.range(-0.04f, 0.04f) * height_);
         const std::vector<Vec3> path = curveThrough({Vec3(0, -0.05f, 0), Vec3(0, 0.5f * bole, 0) + 0.3f * lean,
-                                                     Vec3(0, bole, 0) + 0.5f * lean, Vec3(0, top, 0) + lean}, 14);
+                                                     Vec3(0, bole, 0) + 0.5f * lean, Vec3(0, top, 0) + lean},
+                                                    14);
         std::vector<float> radii;
         for (size_t i = 0; i < path.size(); ++i) {
             const float t = static_cast<float>(i) / static_cast<float>(path.size() - 1);
@@ -62,16 +67,18 @@ private:
             const float y = glm::mix(bole, top, t);
             const Vec3 root = Vec3(0, y, 0) + lean * (0.5f + 0.5f * t);
             const float angle = glm::mix(1.15f, 0.3f, t) + dice.range(-0.12f, 0.12f);
-            const Vec3 direction = turned(Vec3(0, 1, 0), angle, static_cast<float>(i) * 2.39996f + dice.range(-0.3f, 0.3f));
-            const float reach = std::min(0.62f * crown_ / std::max(std::sin(angle), 0.35f), 0.75f * (height_ - y) + 0.2f * crown_);
+            const Vec3 direction =
+                turned(Vec3(0, 1, 0), angle, static_cast<float>(i) * 2.39996f + dice.range(-0.3f, 0.3f));
+            const float reach =
+                std::min(0.62f * crown_ / std::max(std::sin(angle), 0.35f), 0.75f * (height_ - y) + 0.2f * crown_);
             grow(mesh, dice, twigs, root, direction, reach * dice.range(0.85f, 1.0f),
                  trunkRadius_ * glm::mix(0.55f, 0.3f, t), 0);
         }
     }
 
     /// A limb (level 0), branch (1) or twig (2): a bent tube, thinner towards its end, that bears the next level.
-    void grow(Mesh& mesh, Dice& dice, std::vector<TwigPiece>& twigs, const Vec3& root, const Vec3& direction, float length,
-              float radius, int level) const {
+    void grow(Mesh& mesh, Dice& dice, std::vector<TwigPiece>& twigs, const Vec3& root, const Vec3& direction,
+              float length, float radius, int level) const {
         constexpr int kLevels = 3;
         const Vec3 bend = turned(direction, 0.35f, dice.range(0, 2 * kPi));
         const Vec3 tip = root + length * glm::normalize(direction + 0.5f * bend + Vec3(0, 0.25f, 0));
@@ -103,7 +110,8 @@ private:
             const Vec3 along = glm::normalize(twig.end - twig.begin);
             const Vec3 out = turned(along, dice.range(0.5f, 1.2f), dice.range(0, 2 * kPi));
             const Vec3 direction = glm::normalize(out + Vec3(0, dice.range(-0.5f, 0.1f), 0));
-            const Vec3 side = glm::normalize(glm::cross(direction, Vec3(dice.range(-0.5f, 0.5f), 1, dice.range(-0.5f, 0.5f))));
+            const Vec3 side =
+                glm::normalize(glm::cross(direction, Vec3(dice.range(-0.5f, 0.5f), 1, dice.range(-0.5f, 0.5f))));
             appendLeaf(mesh, root, direction, side, dice.range(0.7f, 1.1f));
         }
     }
@@ -113,7 +121,8 @@ private:
         const Vec3 up = glm::cross(side, direction);
         const auto first = static_cast<uint32_t>(mesh.positions.size());
         const Vec3 points[] = {root, root + 0.45f * length * direction + half * side + 0.3f * half * up,
-                               root + 0.5f * length * direction, root + 0.45f * length * direction - half * side + 0.3f * half * up,
+                               root + 0.5f * length * direction,
+                               root + 0.45f * length * direction - half * side + 0.3f * half * up,
                                root + length * direction - 0.12f * length * up};
         const Vec2 uv[] = {{0.5f, 0}, {1, 0.45f}, {0.5f, 0.5f}, {0, 0.45f}, {0.5f, 1}};
         const float tilt[] = {0, -0.35f, 0, 0.35f, 0};
@@ -134,8 +143,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeTree() {
-    return std::make_unique<Tree>();
-}
+std::unique_ptr<Procedural> makeTree() { return std::make_unique<Tree>(); }
 
 }  // namespace lumi

@@ -120,8 +120,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeVessel() {
-    return std::make_unique<Vessel>();
-}
+std::unique_ptr<Procedural> makeVessel() { return std::make_unique<Vessel>(); }
 
 }  // namespace lumi

@@ -46,8 +46,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Procedural> makeWindow() {
-    return std::make_unique<Window>();
-}
+std::unique_ptr<Procedural> makeWindow() { return std::make_unique<Window>(); }
 
 }  // namespace lumi

@@ -40,15 +40,14 @@ TEST(BsdfBounds, AllRoughnessesAndGrazingAngles) {
     for (int i = 0; i <= 20; ++i) roughnesses.push_back(static_cast<float>(i) / 20);
     roughnesses.push_back(0.01999f);
     roughnesses.push_back(0.02f);
-    forEachBsdf(roughnesses, {1, 0.5f, 1e-2f, 1e-5f, 0},
-                [](const Bsdf& bsdf, const BsdfInputs&, const Vec3&, const std::string& label) {
-                    expectUsable(bsdf, label);
-                });
+    forEachBsdf(
+        roughnesses, {1, 0.5f, 1e-2f, 1e-5f, 0},
+        [](const Bsdf& bsdf, const BsdfInputs&, const Vec3&, const std::string& label) { expectUsable(bsdf, label); });
 }
 
 TEST(BsdfBounds, DegenerateInputs) {
     const float odd[] = {0, 1, -1, 1e-30f, 1e30f, kInfinity, -kInfinity, kNan, 0.5f, 1.0005f};
-    const Vec3 directions[] = {{0, 0, 1},  {1, 0, 0},    {0, 0, 0},      {0, 0, -1},
+    const Vec3 directions[] = {{0, 0, 1},    {1, 0, 0},         {0, 0, 0},           {0, 0, -1},
                                {kNan, 0, 1}, {1, 1, kInfinity}, {1e-20f, 0, 1e-20f}, glm::normalize(Vec3(1, 1, 1e-3f))};
     // A fixed walk through the combinations: one input in each place drawn by hash.
     for (uint32_t i = 0; i < 3000; ++i) {

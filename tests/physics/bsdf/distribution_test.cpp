@@ -69,8 +69,8 @@ double deltaShare(const Bsdf& bsdf, const BsdfInputs& inputs) {
     return onTop + bsdf.probability(Lobe::SpecularReflection) + bsdf.probability(Lobe::SpecularTransmission);
 }
 
-/// Mirrors lose no sample. Facets of a coat lose those that reflect downwards, and those weigh nothing in its albedo while
-/// the others weigh 1 at most: what facets that reflect everything lack bounds them.
+/// Mirrors lose no sample. Facets of a coat lose those that reflect downwards, and those weigh nothing in its albedo
+/// while the others weigh 1 at most: what facets that reflect everything lack bounds them.
 double mostLostByCoat(const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo) {
     const float roughness = inputs.layers.clearcoatRoughness;
     if (roughness < Bsdf::kDeltaRoughness) return 0;
@@ -85,41 +85,42 @@ TEST(BsdfDistribution, ChiSquare) {
     const std::vector<float> roughnesses{0, 0.2f, 0.5f, 1}, cosines{0.95f, 0.5f, 0.15f};
     const auto tests = static_cast<int64_t>(materials().size() * roughnesses.size() * cosines.size());
     const double level = sidakLevel(0.01, tests);
-    forEachBsdf(roughnesses, cosines, [&](const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo, const auto& label) {
-        // A needle of a lobe, too narrow for these cells: NarrowLobesInTheirOwnCells has it.
-        if (inputs.roughness == 0 && inputs.layers.anisotropy > 0) return;
-        std::vector<double> observed(kCells + 2), expected(kCells + 2);
-        double integral = 0;
-        for (int cell = 0; cell < kCells; ++cell) {
-            const double share = integratePdf(bsdf, cellAt(cell), gauss(bsdf, cellAt(cell)), 8);
-            // Quadrature may miss the corner of a cell that the edge of a lobe cuts.
-            expected[static_cast<size_t>(cell)] = std::max(share * kSamples, 0.005);
-            integral += share;
-        }
-        for (uint32_t i = 0; i < kSamples; ++i) {
-            const SampleStream stream(SamplerKind::Independent, 0, 7, {1, 2, i});
-            const BsdfSample s = bsdf.sample(stream.get1(0), stream.get2(2));
-            const int cell = s.lobe == Lobe::None ? kCells : s.delta ? kCells + 1 : cellOf(s.wi);
-            observed[static_cast<size_t>(cell)] += 1;
-        }
-        expected[kCells + 1] = deltaShare(bsdf, inputs) * kSamples;
-        // What is absorbed has no density of its own: what the others leave.
-        const double absorbed = 1 - integral - deltaShare(bsdf, inputs);
-        EXPECT_GE(absorbed, -2e-4) << label;
-        const double most = inputs.roughness == 0 ? mostLostByCoat(bsdf, inputs, wo) + 2e-4 : 1;
-        EXPECT_LE(absorbed, most) << label;
-        expected[kCells] = std::max(absorbed, 0.0) * kSamples;
-        if (expected[kCells] < 0.1) {
-            EXPECT_LE(observed[kCells], 3) << label;
-            expected[kCells] = observed[kCells];
-        }
-        EXPECT_GT(chiSquareTest(observed, expected), level) << label;
-    });
+    forEachBsdf(roughnesses, cosines,
+                [&](const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo, const auto& label) {
+                    // A needle of a lobe, too narrow for these cells: NarrowLobesInTheirOwnCells has it.
+                    if (inputs.roughness == 0 && inputs.layers.anisotropy > 0) return;
+                    std::vector<double> observed(kCells + 2), expected(kCells + 2);
+                    double integral = 0;
+                    for (int cell = 0; cell < kCells; ++cell) {
+                        const double share = integratePdf(bsdf, cellAt(cell), gauss(bsdf, cellAt(cell)), 8);
+                        // Quadrature may miss the corner of a cell that the edge of a lobe cuts.
+                        expected[static_cast<size_t>(cell)] = std::max(share * kSamples, 0.005);
+                        integral += share;
+                    }
+                    for (uint32_t i = 0; i < kSamples; ++i) {
+                        const SampleStream stream(SamplerKind::Independent, 0, 7, {1, 2, i});
+                        const BsdfSample s = bsdf.sample(stream.get1(0), stream.get2(2));
+                        const int cell = s.lobe == Lobe::None ? kCells : s.delta ? kCells + 1 : cellOf(s.wi);
+                        observed[static_cast<size_t>(cell)] += 1;
+                    }
+                    expected[kCells + 1] = deltaShare(bsdf, inputs) * kSamples;
+                    // What is absorbed has no density of its own: what the others leave.
+                    const double absorbed = 1 - integral - deltaShare(bsdf, inputs);
+                    EXPECT_GE(absorbed, -2e-4) << label;
+                    const double most = inputs.roughness == 0 ? mostLostByCoat(bsdf, inputs, wo) + 2e-4 : 1;
+                    EXPECT_LE(absorbed, most) << label;
+                    expected[kCells] = std::max(absorbed, 0.0) * kSamples;
+                    if (expected[kCells] < 0.1) {
+                        EXPECT_LE(observed[kCells], 3) << label;
+                        expected[kCells] = observed[kCells];
+                    }
+                    EXPECT_GT(chiSquareTest(observed, expected), level) << label;
+                });
 }
 
 // Lobes too narrow for cells of directions, in cells of the facets that make them: even shares of the normals' own
-// distribution, by azimuth. Whatever does not reflect is one more cell. Broad lobes are left out: they fall into the few
-// steepest facets.
+// distribution, by azimuth. Whatever does not reflect is one more cell. Broad lobes are left out: they fall into the
+// few steepest facets.
 TEST(BsdfDistribution, NarrowLobesInTheirOwnCells) {
     constexpr int kSamples = 20000, kShares = 8, kTurns = 12, kInner = 24;
     const std::vector<float> roughnesses{0, 0.02f, 0.06f};
@@ -140,10 +141,12 @@ TEST(BsdfDistribution, NarrowLobesInTheirOwnCells) {
             for (int j = 0; j < kTurns * kInner; ++j) {
                 double density;
                 const double steeper = (i + 0.5) / (kShares * kInner), phi = 2 * M_PI * (j + 0.5) / (kTurns * kInner);
-                const glm::dvec3 h = facets.at(steeper, phi, density), wi = 2 * glm::dot(glm::dvec3(wo), h) * h - glm::dvec3(wo);
+                const glm::dvec3 h = facets.at(steeper, phi, density),
+                                 wi = 2 * glm::dot(glm::dvec3(wo), h) * h - glm::dvec3(wo);
                 const double cosFacet = glm::dot(glm::dvec3(wo), h);
                 if (cosFacet <= 0 || wi.z <= 0) continue;
-                const double share = bsdf.evaluate(Vec3(wi)).pdf * 4 * cosFacet / density / (kShares * kTurns * kInner * kInner);
+                const double share =
+                    bsdf.evaluate(Vec3(wi)).pdf * 4 * cosFacet / density / (kShares * kTurns * kInner * kInner);
                 expected[static_cast<size_t>(i / kInner * kTurns + j / kInner)] += share * kSamples;
                 sum += share;
             }
@@ -250,7 +253,8 @@ TEST(BsdfDistribution, Reciprocity) {
                     // looked up towards wi in a table that is off by up to 0.04.
                     const bool found = layers.anisotropy > 0 && lobe == Lobe::Diffuse;
                     for (int c = 0; c < 3; ++c)
-                        ASSERT_NEAR(ab[c], ba[c], (found ? 0.05f : 1e-3f) * ab[c] + 1e-6f) << material.name << " " << roughness;
+                        ASSERT_NEAR(ab[c], ba[c], (found ? 0.05f : 1e-3f) * ab[c] + 1e-6f)
+                            << material.name << " " << roughness;
                 }
             }
 }

@@ -63,8 +63,8 @@ struct Worst {
         if (const double own = std::abs(found / expected - 1); own > ratio) ratio = own, label = name;
     }
     void print(const char* what) const {
-        std::printf("    %s: off by %.2f%% of the value at most (%s), %d of %d values resolved to 1%%\n", what, 100 * ratio,
-                    label.c_str(), resolved, all);
+        std::printf("    %s: off by %.2f%% of the value at most (%s), %d of %d values resolved to 1%%\n", what,
+                    100 * ratio, label.c_str(), resolved, all);
     }
 };
 
@@ -78,43 +78,49 @@ LobeIntegral albedoByQuadrature(const Bsdf& bsdf, const BsdfInputs& inputs, cons
     return integrateLobe(bsdf, inputs, wo, lobe);
 }
 
-// In a furnace of radiance 1 a lobe shows its directional albedo, whatever finds it: samples, quadrature over facets and
-// directions that sample() does not use, or the tables that the engine reads. All together never more than arrives.
+// In a furnace of radiance 1 a lobe shows its directional albedo, whatever finds it: samples, quadrature over facets
+// and directions that sample() does not use, or the tables that the engine reads. All together never more than arrives.
 TEST(BsdfEnergy, EveryLobesFurnaceIsItsDirectionalAlbedo) {
     const std::vector<float> roughnesses{0, 0.02f, 0.06f, 0.1f, 0.3f, 0.6f, 1}, cosines{1, 0.9f, 0.6f, 0.3f, 0.1f};
-    const auto comparisons = static_cast<int64_t>(materials().size() * roughnesses.size() * cosines.size() * 3 * kLobeCount);
+    const auto comparisons =
+        static_cast<int64_t>(materials().size() * roughnesses.size() * cosines.size() * 3 * kLobeCount);
     const double most = studentQuantile(sidakLevel(0.01, comparisons) / 2, Furnace::kStreams - 1);
     Worst bySamples, byTables;
-    forEachBsdf(roughnesses, cosines, [&](const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo, const std::string& label) {
-        const Furnace furnace(bsdf);
-        // Many-bounce glass at a grazing view and thin films miss 1% of a small value here, by up to 0.002: 1% of a quarter.
-        const bool between = inputs.roughness == 0.1f || wo.z == 0.9f;
-        const auto coarse = [](double albedo) { return 0.01 * std::max(albedo, 0.25); };
-        Vec3 sum(0);
-        for (int lobe = 0; lobe < kLobeCount; ++lobe) {
-            const LobeIntegral quadrature = albedoByQuadrature(bsdf, inputs, wo, kLobes[lobe]);
-            EXPECT_LE(quadrature.error, 1e-3f) << label << ", " << nameOf(kLobes[lobe]);
-            sum += quadrature.value;
-            for (int c = 0; c < 3; ++c) {
-                const std::string name = label + ", " + nameOf(kLobes[lobe]) + ", channel " + std::to_string(c);
-                const RunningMoments& sampled = furnace.lobes[lobe][c];
-                const double albedo = quadrature.value[c], error = std::sqrt(sampled.meanVariance());
-                const double unseen = error > 0 ? 0 : Furnace::kUnseen;
-                const double allowed = between ? coarse(albedo) : 0.01 * albedo;
-                EXPECT_NEAR(sampled.mean(), albedo, allowed + most * error + quadrature.error + unseen) << name;
-                EXPECT_NEAR(bsdf.albedo(kLobes[lobe])[c], albedo, std::min(coarse(albedo), 0.01 * albedo + kKinkError)) << name;
-                bySamples.add(sampled.mean(), albedo, most * error + quadrature.error + unseen, name);
-                byTables.add(bsdf.albedo(kLobes[lobe])[c], albedo, kKinkError + quadrature.error, name);
+    forEachBsdf(
+        roughnesses, cosines,
+        [&](const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo, const std::string& label) {
+            const Furnace furnace(bsdf);
+            // Many-bounce glass at a grazing view and thin films miss 1% of a small value here, by up to 0.002: 1% of a
+            // quarter.
+            const bool between = inputs.roughness == 0.1f || wo.z == 0.9f;
+            const auto coarse = [](double albedo) { return 0.01 * std::max(albedo, 0.25); };
+            Vec3 sum(0);
+            for (int lobe = 0; lobe < kLobeCount; ++lobe) {
+                const LobeIntegral quadrature = albedoByQuadrature(bsdf, inputs, wo, kLobes[lobe]);
+                EXPECT_LE(quadrature.error, 1e-3f) << label << ", " << nameOf(kLobes[lobe]);
+                sum += quadrature.value;
+                for (int c = 0; c < 3; ++c) {
+                    const std::string name = label + ", " + nameOf(kLobes[lobe]) + ", channel " + std::to_string(c);
+                    const RunningMoments& sampled = furnace.lobes[lobe][c];
+                    const double albedo = quadrature.value[c], error = std::sqrt(sampled.meanVariance());
+                    const double unseen = error > 0 ? 0 : Furnace::kUnseen;
+                    const double allowed = between ? coarse(albedo) : 0.01 * albedo;
+                    EXPECT_NEAR(sampled.mean(), albedo, allowed + most * error + quadrature.error + unseen) << name;
+                    EXPECT_NEAR(bsdf.albedo(kLobes[lobe])[c], albedo,
+                                std::min(coarse(albedo), 0.01 * albedo + kKinkError))
+                        << name;
+                    bySamples.add(sampled.mean(), albedo, most * error + quadrature.error + unseen, name);
+                    byTables.add(bsdf.albedo(kLobes[lobe])[c], albedo, kKinkError + quadrature.error, name);
+                }
             }
-        }
-        EXPECT_LE(maxComponent(sum), 1 + kTableError) << label;
-        EXPECT_LE(maxComponent(bsdf.albedo(Lobe::Diffuse) + bsdf.specularAlbedo()), 1 + 1e-5f) << label;
-        for (int c = 0; c < 3; ++c) {
-            const double error = std::sqrt(furnace.totals[c].meanVariance());
-            EXPECT_NEAR(furnace.totals[c].mean(), sum[c], 0.01 * sum[c] + most * error) << label;
-            EXPECT_LE(furnace.totals[c].mean(), 1 + kTableError + most * error) << label;
-        }
-    });
+            EXPECT_LE(maxComponent(sum), 1 + kTableError) << label;
+            EXPECT_LE(maxComponent(bsdf.albedo(Lobe::Diffuse) + bsdf.specularAlbedo()), 1 + 1e-5f) << label;
+            for (int c = 0; c < 3; ++c) {
+                const double error = std::sqrt(furnace.totals[c].meanVariance());
+                EXPECT_NEAR(furnace.totals[c].mean(), sum[c], 0.01 * sum[c] + most * error) << label;
+                EXPECT_LE(furnace.totals[c].mean(), 1 + kTableError + most * error) << label;
+            }
+        });
     bySamples.print("samples against quadrature");
     byTables.print("tables against quadrature");
     EXPECT_GT(bySamples.resolved, bySamples.all / 3);

@@ -55,7 +55,8 @@ TEST(ThinFilm, StaysInRangeAndAveragesRight) {
                 ASSERT_TRUE(isFinite(r) && minComponent(r) >= 0 && maxComponent(r) <= 1);
                 sum += r / 400.0f;
             }
-            for (int k = 0; k < 3; ++k) EXPECT_NEAR(film.averageReflectance()[k], sum[k], 0.005f) << index << " " << thickness;
+            for (int k = 0; k < 3; ++k)
+                EXPECT_NEAR(film.averageReflectance()[k], sum[k], 0.005f) << index << " " << thickness;
         }
 }
 
@@ -119,18 +120,19 @@ TEST(Layers, WhiteStaysWhite) {
 
 // With nothing on it a layered material is the plain one to the last bit.
 TEST(Layers, NoneIsTheSameBits) {
-    forEachBsdf({0, 0.3f, 1}, {0.9f, 0.2f}, [](const Bsdf&, const BsdfInputs& given, const Vec3& wo, const auto& label) {
-        BsdfInputs inputs = given;
-        inputs.layers = {};
-        inputs.layered = false;
-        const Bsdf plain(inputs, wo);
-        inputs.layered = true;
-        const Bsdf layered(inputs, wo);
-        const Vec3 wi = fromAngles(0.6f, 2);
-        EXPECT_EQ(plain.evaluate(wi).specular, layered.evaluate(wi).specular) << label;
-        EXPECT_EQ(plain.evaluate(wi).pdf, layered.evaluate(wi).pdf) << label;
-        EXPECT_EQ(plain.sample(0.7f, {0.2f, 0.3f}).wi, layered.sample(0.7f, {0.2f, 0.3f}).wi) << label;
-    });
+    forEachBsdf({0, 0.3f, 1}, {0.9f, 0.2f},
+                [](const Bsdf&, const BsdfInputs& given, const Vec3& wo, const auto& label) {
+                    BsdfInputs inputs = given;
+                    inputs.layers = {};
+                    inputs.layered = false;
+                    const Bsdf plain(inputs, wo);
+                    inputs.layered = true;
+                    const Bsdf layered(inputs, wo);
+                    const Vec3 wi = fromAngles(0.6f, 2);
+                    EXPECT_EQ(plain.evaluate(wi).specular, layered.evaluate(wi).specular) << label;
+                    EXPECT_EQ(plain.evaluate(wi).pdf, layered.evaluate(wi).pdf) << label;
+                    EXPECT_EQ(plain.sample(0.7f, {0.2f, 0.3f}).wi, layered.sample(0.7f, {0.2f, 0.3f}).wi) << label;
+                });
 }
 
 // Stretched facets make a highlight that is long across the brushing and narrow along the other way.

@@ -34,8 +34,9 @@ const std::vector<NamedMaterial>& materials() {
         add("bubble from outside", [&](BsdfInputs& i) { i.transmission = 1, i.solid = true, i.ior = 0.75f; });
         add("tinted half glass",
             [&](BsdfInputs& i) { i.transmission = 0.5f, i.solid = true, i.baseColor = red, i.ior = 1.33f; });
-        for (const char* name : {"white metal", "gold", "white plastic", "thin wall", "tinted thin wall", "glass from outside",
-                                 "glass from inside", "bubble from outside", "tinted half glass"}) {
+        for (const char* name :
+             {"white metal", "gold", "white plastic", "thin wall", "tinted thin wall", "glass from outside",
+              "glass from inside", "bubble from outside", "tinted half glass"}) {
             const auto same = [&](const NamedMaterial& m) { return m.name == name; };
             NamedMaterial many = *std::find_if(list.begin(), list.end(), same);
             many.name += ", many bounces";

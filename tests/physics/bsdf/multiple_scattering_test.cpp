@@ -42,8 +42,10 @@ glm::dvec2 albedoBySlopes(const Ggx& ggx, const Vec3& wo) {
     glm::dvec2 sum(0);
     for (int i = 0; i < kRings; ++i)
         for (int j = 0; j < kTurns; ++j) {
-            const double t = (i + 0.5) / kRings, slope = std::sqrt(1 / (t * t) - 1), phi = 2 * M_PI * (j + 0.5) / kTurns;
-            const double x = ggx.alpha * ggx.stretch * slope * std::cos(phi), y = ggx.alpha * ggx.shrink * slope * std::sin(phi);
+            const double t = (i + 0.5) / kRings, slope = std::sqrt(1 / (t * t) - 1),
+                         phi = 2 * M_PI * (j + 0.5) / kTurns;
+            const double x = ggx.alpha * ggx.stretch * slope * std::cos(phi),
+                         y = ggx.alpha * ggx.shrink * slope * std::sin(phi);
             const glm::dvec3 h = glm::normalize(glm::dvec3(x, y, 1)), o(wo);
             const double c = glm::dot(o, h);
             const Vec3 wi(2 * c * h - o);
@@ -79,8 +81,10 @@ TEST(AlbedoTable, StretchedNeverSaysTooLittle) {
         const Vec3 wo(r * std::cos(phi), r * std::sin(phi), cosTheta);
         const glm::dvec2 exact = albedoBySlopes(ggx, wo);
         const Vec2 tabled = AnisotropicAlbedo::get().directional(ggx, wo);
-        EXPECT_GE(tabled.x + tabled.y, exact.x + exact.y - 1e-3) << roughness.x << " " << roughness.y << " " << cosTheta;
-        EXPECT_LE(tabled.x + tabled.y, exact.x + exact.y + 5e-3) << roughness.x << " " << roughness.y << " " << cosTheta;
+        EXPECT_GE(tabled.x + tabled.y, exact.x + exact.y - 1e-3)
+            << roughness.x << " " << roughness.y << " " << cosTheta;
+        EXPECT_LE(tabled.x + tabled.y, exact.x + exact.y + 5e-3)
+            << roughness.x << " " << roughness.y << " " << cosTheta;
     }
 }
 

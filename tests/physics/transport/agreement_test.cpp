@@ -15,8 +15,8 @@ using namespace test;
 constexpr Extent2 kExtent{24, 18};
 const SignalSet kMoments{Signal::Noisy, Signal::SampleVariance};
 
-/// Area light, sky with a bright side, metal, gloss and a diffuse floor; the metal of that roughness, the gloss of one at
-/// least 0.4.
+/// Area light, sky with a bright side, metal, gloss and a diffuse floor; the metal of that roughness, the gloss of one
+/// at least 0.4.
 TinyScene mixedScene(float roughness = 0.25f) {
     TinyScene tiny;
     tiny.add(floorMesh(8), lambert(Vec3(0.7f, 0.6f, 0.5f)));
@@ -53,9 +53,7 @@ TinyScene mixedScene(float roughness = 0.25f) {
     return tiny;
 }
 
-Camera mixedCamera() {
-    return lookFrom(Vec3(0.5f, 1.6f, 4.5f), Vec3(0, 0.5f, 0), 40);
-}
+Camera mixedCamera() { return lookFrom(Vec3(0.5f, 1.6f, 4.5f), Vec3(0, 0.5f, 0), 40); }
 
 Signals render(std::shared_ptr<const PosedScene> posed, const Camera& camera, int spp, PathSettings path, uint32_t seed,
                const SignalSet& wanted = kMoments) {
@@ -70,10 +68,12 @@ Signals render(std::shared_ptr<const PosedScene> posed, const Camera& camera, in
 TEST(Strategies, MisLightAndBsdfConvergeToOneImage) {
     // Of a thousand light samples eight fall into the lobe of a metal of roughness 0.25: too few for a normal law, and
     // for a variance that is true. At 0.5 it is sixteen times as many.
-    for (const auto& [strategy, roughness] : {std::pair(DirectStrategy::Light, 0.5f), std::pair(DirectStrategy::Bsdf, 0.25f)}) {
+    for (const auto& [strategy, roughness] :
+         {std::pair(DirectStrategy::Light, 0.5f), std::pair(DirectStrategy::Bsdf, 0.25f)}) {
         const auto posed = mixedScene(roughness).pose();
         const Signals mis = render(posed, mixedCamera(), 256, plainPaths(4, DirectStrategy::Mis), 1);
-        const Signals other = render(posed, mixedCamera(), 1024, plainPaths(4, strategy), 2 + static_cast<uint32_t>(strategy));
+        const Signals other =
+            render(posed, mixedCamera(), 1024, plainPaths(4, strategy), 2 + static_cast<uint32_t>(strategy));
         EXPECT_GE(agreeingShare(mis, other), 0.9975) << static_cast<int>(strategy);
         EXPECT_LT(std::abs(biasInSigmas(mis, other)), 4) << static_cast<int>(strategy);
     }
@@ -164,8 +164,8 @@ TEST(Strategies, SobolAndHaltonConvergeToTheSameImage) {
     EXPECT_GE(agreeingShare(independent, render(posed, mixedCamera(), 256, path, 2)), 0.9975);
     path.sampler = SamplerKind::Halton;
     path.haltonLoop = 4096;
-    // Points of one Halton sequence are correlated, in high dimensions strongly: its own sample variance says nothing of
-    // the error. Turned independently by their seeds, means of short runs are independent.
+    // Points of one Halton sequence are correlated, in high dimensions strongly: its own sample variance says nothing
+    // of the error. Turned independently by their seeds, means of short runs are independent.
     constexpr uint32_t kRuns = 64;
     const Image& truth = independent[Signal::Noisy];
     std::vector<RunningMoments> runs(truth.size());

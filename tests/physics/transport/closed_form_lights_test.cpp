@@ -22,9 +22,7 @@ Estimate seenOnFloor(const Light& light, const Mat4& worldFromLight, int count, 
     return radianceAlong(tracer, Vec3(0.6f, 0.3f, 0.2f), Vec3(-0.6f, -0.3f, -0.2f), count, plainPaths(1, strategy));
 }
 
-Mat4 lightAt(const Vec3& position, const Vec3& target) {
-    return lookAt(position, target, Vec3(0, 0, 1));
-}
+Mat4 lightAt(const Vec3& position, const Vec3& target) { return lookAt(position, target, Vec3(0, 0, 1)); }
 
 class ClosedForms : public testing::TestWithParam<DirectStrategy> {};
 

@@ -160,7 +160,8 @@ Material glass(float roughness) {
 TEST(Furnace, GlassSphereIsInvisible) {
     // What facets scatter more than once is given back but for the tables' margin of 0.0015 a meeting inside; at a mean
     // internal reflectance of 0.6 a path has two and a half of these.
-    for (const auto& [roughness, tolerance] : {std::pair(0.0f, 0.003), std::pair(0.3f, 0.005), std::pair(0.8f, 0.005)}) {
+    for (const auto& [roughness, tolerance] :
+         {std::pair(0.0f, 0.003), std::pair(0.3f, 0.005), std::pair(0.8f, 0.005)}) {
         TinyScene tiny;
         tiny.add(facetedSphere(1, 48), glass(roughness));
         tiny.scene.environment.constant = Vec3(1);
@@ -201,7 +202,8 @@ TEST(Transmission, ThinWallIsSeenStraightThrough) {
     Tracer tracer;
     tracer.bind(tiny.pose());
     const double cosI = std::sqrt(0.5), cosT = std::sqrt(1 - 0.5 / 2.25);
-    const double perpendicular = (cosI - 1.5 * cosT) / (cosI + 1.5 * cosT), parallel = (1.5 * cosI - cosT) / (1.5 * cosI + cosT);
+    const double perpendicular = (cosI - 1.5 * cosT) / (cosI + 1.5 * cosT),
+                 parallel = (1.5 * cosI - cosT) / (1.5 * cosI + cosT);
     const double f = 0.5 * (perpendicular * perpendicular + parallel * parallel);
     const Estimate e = radianceAlong(tracer, Vec3(1, 0, 1), Vec3(-1, 0, -1), 20000, plainPaths(4));
     EXPECT_LT(e.z(f + (1 - f) * 0.8 * 5), kMostSigmas) << e.mean;
@@ -269,8 +271,9 @@ TEST(Regularize, WidensLobesOnlyAfterDiffuseOnes) {
     EXPECT_EQ(radianceAlong(tracer, Vec3(0, 1, 0), Vec3(1, -1, 0), 256, path).mean, before);
 }
 
-// A mirror throws a point light onto the floor by paths that nothing samples; widened it does. With a decay the widening
-// ends at the sample whose least roughness is that of a mirror, here near the 8300th, and what it added falls as 1/n.
+// A mirror throws a point light onto the floor by paths that nothing samples; widened it does. With a decay the
+// widening ends at the sample whose least roughness is that of a mirror, here near the 8300th, and what it added falls
+// as 1/n.
 TEST(Regularize, OpensClosedPathsAndVanishes) {
     TinyScene tiny;
     tiny.add(floorMesh(), lambert(0.5f));

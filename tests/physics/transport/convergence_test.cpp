@@ -5,8 +5,8 @@
 #include <limits>
 #include <thread>
 
-#include "support/image_tests.h"
 #include "support/expect_error.h"
+#include "support/image_tests.h"
 #include "support/transport_scene.h"
 
 namespace lumi {

@@ -70,7 +70,9 @@ const Emitter kEmitters[] = {
          tiny.addLight(flatLight(LightType::Rectangle, true), kAbove * shear);
      }},
     {"TexturedMesh",
-     [](TinyScene& tiny) { tiny.add(sphereMesh(0.6f, 16, 8), shining(true, false), translation(Vec3(0.4f, 1.5f, 0))); }},
+     [](TinyScene& tiny) {
+         tiny.add(sphereMesh(0.6f, 16, 8), shining(true, false), translation(Vec3(0.4f, 1.5f, 0)));
+     }},
     {"MeshOfBothSides",
      [](TinyScene& tiny) {
          Mesh sheet = rectangleMesh(1.4f, 1.4f, Facing::Y, 5, 5);
@@ -83,7 +85,9 @@ const Emitter kEmitters[] = {
          const auto ball = std::make_shared<const Mesh>(facetedSphere(0.15f, 8));
          const int glow = tiny.addMaterial(shining(false, false));
          for (int i = 0; i < 40; ++i)
-             tiny.add(ball, glow, translation(Vec3(-2 + 0.5f * static_cast<float>(i % 9), 1 + 0.25f * static_cast<float>(i % 5), -1 + 0.4f * static_cast<float>(i / 8))));
+             tiny.add(ball, glow,
+                      translation(Vec3(-2 + 0.5f * static_cast<float>(i % 9), 1 + 0.25f * static_cast<float>(i % 5),
+                                       -1 + 0.4f * static_cast<float>(i / 8))));
      }},
 };
 
@@ -108,8 +112,9 @@ TEST_P(Emitters, EveryStrategyAndChoiceConvergesToOneImage) {
         LightSampling choice;
         int spp;
     };
-    for (const Way way : {Way{DirectStrategy::Light, LightSampling::Tree, 512}, Way{DirectStrategy::Bsdf, LightSampling::Tree, 1024},
-                          Way{DirectStrategy::Mis, LightSampling::Power, 256}}) {
+    for (const Way way :
+         {Way{DirectStrategy::Light, LightSampling::Tree, 512}, Way{DirectStrategy::Bsdf, LightSampling::Tree, 1024},
+          Way{DirectStrategy::Mis, LightSampling::Power, 256}}) {
         PathSettings path = plainPaths(2, way.strategy);
         path.lightSampling = way.choice;
         ASSERT_TRUE(tracer.sample(frameOf(camera, kExtent, way.spp, path, kMoments, 2), other));

@@ -1,4 +1,5 @@
-// The open shutter and the lens against brute force: posed frames at random times, rays through random points of the lens.
+// The open shutter and the lens against brute force: posed frames at random times, rays through random points of the
+// lens.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -55,7 +56,8 @@ TinyScene everythingMoves() {
     MorphTarget target;
     for (const Vec3& p : wall.positions) target.positions.push_back(Vec3(0.7f * p.y, 0.3f * p.x * p.x, 0.3f * p.x));
     wall.morphTargets.push_back(target);
-    const int shearing = nodeOf(tiny.add(std::move(wall), lambert(Vec3(0.2f, 0.7f, 0.3f)), translation(Vec3(0.3f, 0.7f, -0.5f))));
+    const int shearing =
+        nodeOf(tiny.add(std::move(wall), lambert(Vec3(0.2f, 0.7f, 0.3f)), translation(Vec3(0.3f, 0.7f, -0.5f))));
     tiny.scene.nodes[static_cast<size_t>(shearing)].morphWeights = {0};
     Animation morph;
     morph.duration = 1, morph.loop = false;
@@ -67,7 +69,8 @@ TinyScene everythingMoves() {
     strip.skin.joint.assign(strip.positions.size(), 0);
     strip.skin.weight.assign(strip.positions.size(), 1);
     const int skinned = tiny.add(std::move(strip), lambert(Vec3(0.2f, 0.3f, 0.8f)));
-    const int joint = movingNode(tiny, tiny.addNode(Mat4(1)), {1.3f, 0.6f, 0, 1.1f, 0.8f, 0}, {0, 0, 0, 1, 0, kHalf, 0, kHalf});
+    const int joint =
+        movingNode(tiny, tiny.addNode(Mat4(1)), {1.3f, 0.6f, 0, 1.1f, 0.8f, 0}, {0, 0, 0, 1, 0, kHalf, 0, kHalf});
     tiny.scene.instances[static_cast<size_t>(skinned)].skin = 0;
     tiny.scene.skins.push_back({{joint}, {Mat4(1)}});
 
@@ -90,7 +93,8 @@ TinyScene everythingMoves() {
     spot.type = LightType::Spot;
     spot.intensity = Vec3(4), spot.outerConeDeg = 30, spot.innerConeDeg = 20;
     tiny.addLight(spot, Mat4(1));
-    movingNode(tiny, tiny.scene.lights.back().node, {-1, 2.5f, 1.5f, 1, 2.5f, 1.5f}, {-kHalf, 0, 0, kHalf, -kHalf, 0, 0, kHalf});
+    movingNode(tiny, tiny.scene.lights.back().node, {-1, 2.5f, 1.5f, 1, 2.5f, 1.5f},
+               {-kHalf, 0, 0, kHalf, -kHalf, 0, 0, kHalf});
     return tiny;
 }
 
@@ -174,7 +178,9 @@ TEST(Shutter, PointsKeepTheirTimeAFrameEarlier) {
         for (uint32_t i = 0; i < 400; ++i) {
             const float time = number(1, i % 20);
             if (i % 20 == 0) continue;
-            const Ray ray{camera().eye, 0, glm::normalize(Vec3(4 * number(2, i) - 2, 2.4f * number(3, i), 0) - camera().eye), kInfinity, time};
+            const Ray ray{camera().eye, 0,
+                          glm::normalize(Vec3(4 * number(2, i) - 2, 2.4f * number(3, i), 0) - camera().eye), kInfinity,
+                          time};
             Hit hit;
             tracer.closestHits({&ray, 1}, {&hit, 1});
             if (!hit.valid()) continue;
@@ -266,8 +272,10 @@ TEST(Lens, ConvergesToTheMeanOfPinholes) {
                 ++drawn;
                 bool inside = glm::dot(p, p) < 1;
                 for (int side = 0; side < blades; ++side) {
-                    const float middle = radians(25) + 2 * kPi * (static_cast<float>(side) + 0.5f) / static_cast<float>(blades);
-                    inside &= glm::dot(p, Vec2(std::cos(middle), std::sin(middle))) < std::cos(kPi / static_cast<float>(blades));
+                    const float middle =
+                        radians(25) + 2 * kPi * (static_cast<float>(side) + 0.5f) / static_cast<float>(blades);
+                    inside &= glm::dot(p, Vec2(std::cos(middle), std::sin(middle))) <
+                              std::cos(kPi / static_cast<float>(blades));
                 }
                 if (inside) return p;
             }
@@ -283,8 +291,9 @@ TEST(Lens, ConvergesToTheMeanOfPinholes) {
             for (int y = 0; y < kExtent.height; ++y)
                 for (int x = 0; x < kExtent.width; ++x) {
                     const auto slot = static_cast<uint32_t>(y * kExtent.width + x);
-                    PathStart start = cameraStart(poseCamera(camera(), kExtent),
-                                                  Vec2(x + number(13 + s, slot), y + number(10013 + s, slot)), Vec2(0.5f), 0);
+                    PathStart start =
+                        cameraStart(poseCamera(camera(), kExtent),
+                                    Vec2(x + number(13 + s, slot), y + number(10013 + s, slot)), Vec2(0.5f), 0);
                     const float depth = glm::dot(start.ray.direction, pose.forward());
                     const Vec3 inFocus = start.ray.origin + start.ray.direction * (4 / depth);
                     start.ray.origin += transformVector(pose.worldFromCamera, Vec3(hole, 0));
@@ -296,7 +305,8 @@ TEST(Lens, ConvergesToTheMeanOfPinholes) {
             ASSERT_TRUE(tracer.tracePaths(starts, plainPaths(1), 5, radiance, {}));
             for (size_t i = 0; i < radiance.size(); ++i)
                 for (int c = 0; c < 3; ++c)
-                    frame[Signal::Noisy].at(c, static_cast<int>(i) % kExtent.width, static_cast<int>(i) / kExtent.width) = radiance[i][c];
+                    frame[Signal::Noisy].at(c, static_cast<int>(i) % kExtent.width,
+                                            static_cast<int>(i) / kExtent.width) = radiance[i][c];
             mean.add(frame);
         }
         const Signals pinholes = mean.signals();

@@ -13,9 +13,24 @@ struct LevelKernels {
 };
 LUMI_KERNELS(LevelKernels, level)
 // What the build makes of a file of KERNELS: one definition for each level.
-namespace baseline { const LevelKernels& levelTable() { static const LevelKernels table{1}; return table; } }
-namespace v3 { const LevelKernels& levelTable() { static const LevelKernels table{2}; return table; } }
-namespace v4 { const LevelKernels& levelTable() { static const LevelKernels table{3}; return table; } }
+namespace baseline {
+const LevelKernels& levelTable() {
+    static const LevelKernels table{1};
+    return table;
+}
+}  // namespace baseline
+namespace v3 {
+const LevelKernels& levelTable() {
+    static const LevelKernels table{2};
+    return table;
+}
+}  // namespace v3
+namespace v4 {
+const LevelKernels& levelTable() {
+    static const LevelKernels table{3};
+    return table;
+}
+}  // namespace v4
 
 namespace {
 

@@ -63,8 +63,8 @@ TEST(Files, UnfinishedOnesAreKnownByTheirNames) {
     ASSERT_TRUE(part);
     EXPECT_EQ(part->whole, "out/a.b.png");
     EXPECT_EQ(part->process, 4711);
-    for (const char* name : {"a.png", "a.tmp", "a.png.12.tmp", "a.png.x.12.tmp", "a.png.12.y.tmp", "a.png.-1.12.tmp", ".1.2.tmp",
-                             "a.png.99999999999.1.tmp", "a.png.1.2.TMP", "out/1.2.tmp", ""})
+    for (const char* name : {"a.png", "a.tmp", "a.png.12.tmp", "a.png.x.12.tmp", "a.png.12.y.tmp", "a.png.-1.12.tmp",
+                             ".1.2.tmp", "a.png.99999999999.1.tmp", "a.png.1.2.TMP", "out/1.2.tmp", ""})
         EXPECT_FALSE(unfinishedFile(name)) << name;
 }
 
@@ -113,8 +113,10 @@ TEST(Files, WhatCannotBeWrittenIsKnownBefore) {
     requireWritable(folder / "a/b/c.exr");
     EXPECT_TRUE(fs::is_empty(folder / "a/b")) << "the folder is there, and nothing in it";
     writeFileAtomically(folder / "file", "x");
-    expectError(ErrorKind::Usage, [&] { requireWritable(folder / "file/x.exr"); }, {"file/x.exr", "folder cannot be created", "Not a directory"});
-    expectError(ErrorKind::Usage, [] { requireWritable("/proc/nothing/x.exr"); }, {"/proc/nothing/x.exr", "folder cannot be created"});
+    expectError(ErrorKind::Usage, [&] { requireWritable(folder / "file/x.exr"); },
+                {"file/x.exr", "folder cannot be created", "Not a directory"});
+    expectError(ErrorKind::Usage, [] { requireWritable("/proc/nothing/x.exr"); },
+                {"/proc/nothing/x.exr", "folder cannot be created"});
 }
 
 TEST(Files, NamesInAFileStayInItsFolder) {
@@ -123,7 +125,8 @@ TEST(Files, NamesInAFileStayInItsFolder) {
     EXPECT_EQ(pathInside("/models", "..b/.../c"), fs::path("/models/..b/.../c"));
     EXPECT_EQ(pathInside("", "./b.png"), fs::path("b.png"));
     using namespace std::string_literals;
-    for (const std::string& name : {"../b.png"s, "/b.png"s, "a/../../b.png"s, "a/./../..//b.png"s, ".."s, "a\0b"s, "//b"s})
+    for (const std::string& name :
+         {"../b.png"s, "/b.png"s, "a/../../b.png"s, "a/./../..//b.png"s, ".."s, "a\0b"s, "//b"s})
         EXPECT_FALSE(pathInside("/models", name)) << name;
 }
 

@@ -18,7 +18,8 @@ constexpr Extent2 kExtent{83, 41};
 void fillLuminance(Illumination& planes) {
     for (int y = 0; y < kExtent.height; ++y)
         for (int x = 0; x < kExtent.width; ++x)
-            planes.luminance.at(0, x, y) = 0.2126f * planes.rgb.at(0, x, y) + 0.7152f * planes.rgb.at(1, x, y) + 0.0722f * planes.rgb.at(2, x, y);
+            planes.luminance.at(0, x, y) =
+                0.2126f * planes.rgb.at(0, x, y) + 0.7152f * planes.rgb.at(1, x, y) + 0.0722f * planes.rgb.at(2, x, y);
 }
 
 /// Everything a level reads, at random: a bumpy surface with a stripe of sky.
@@ -34,14 +35,16 @@ struct Planes {
                 Vec3 n = normalize(Vec3(0.15f * random.between(-1, 1), 0.15f * random.between(-1, 1), 1));
                 if (sky) n = Vec3(0);
                 for (int c = 0; c < 3; ++c) normal.at(c, x, y) = n[c];
-                inverseDepth.at(0, x, y) = sky ? 0 : 0.5f + 0.002f * static_cast<float>(x) + 0.001f * random.between(0, 1);
+                inverseDepth.at(0, x, y) =
+                    sky ? 0 : 0.5f + 0.002f * static_cast<float>(x) + 0.001f * random.between(0, 1);
                 slope.at(0, x, y) = sky ? 0 : 0.002f;
                 slope.at(1, x, y) = sky ? 0 : 0.001f * random.between(-1, 1);
             }
         for (Illumination& planes : light) {
             planes.reset(kExtent);
             for (size_t i = 0; i < planes.rgb.size(); ++i) planes.rgb.data()[i] = random.between(0, 2);
-            for (size_t i = 0; i < planes.sampleVariance.size(); ++i) planes.sampleVariance.data()[i] = random.between(0, 0.2f);
+            for (size_t i = 0; i < planes.sampleVariance.size(); ++i)
+                planes.sampleVariance.data()[i] = random.between(0, 0.2f);
             fillLuminance(planes);
         }
     }
@@ -60,7 +63,8 @@ struct Planes {
 /// w(p, q) of eqs. 2 to 5, in double.
 double weight(const Planes& planes, const Illumination& light, const AtrousSettings& settings, Pixel p, Pixel q) {
     const double zp = planes.inverseDepth.at(0, p.x, p.y), zq = planes.inverseDepth.at(0, q.x, q.y);
-    const double rise = double(planes.slope.at(0, p.x, p.y)) * (p.x - q.x) + double(planes.slope.at(1, p.x, p.y)) * (p.y - q.y);
+    const double rise =
+        double(planes.slope.at(0, p.x, p.y)) * (p.x - q.x) + double(planes.slope.at(1, p.x, p.y)) * (p.y - q.y);
     const double numerator = settings.edges.planeDistance ? std::abs(zp - zq - rise) : std::abs(zp - zq);
     const double wz = std::exp(-numerator / (settings.edges.sigmaDepth * std::abs(rise) + 1e-3 * zp + 1e-30));
     double cosine = 0;
@@ -72,7 +76,8 @@ double weight(const Planes& planes, const Illumination& light, const AtrousSetti
         for (int j = -1; j <= 1; ++j)
             for (int i = -1; i <= 1; ++i)
                 variance += (2 - std::abs(i)) * (2 - std::abs(j)) / 16.0 *
-                            light.sampleVariance.at(0, std::clamp(p.x + i, 0, kExtent.width - 1), std::clamp(p.y + j, 0, kExtent.height - 1));
+                            light.sampleVariance.at(0, std::clamp(p.x + i, 0, kExtent.width - 1),
+                                                    std::clamp(p.y + j, 0, kExtent.height - 1));
     }
     const double difference = std::abs(double(light.luminance.at(0, p.x, p.y)) - light.luminance.at(0, q.x, q.y));
     return wz * wn * std::exp(-difference / (settings.edges.sigmaLuminance * std::sqrt(variance + 1e-10)));
@@ -83,7 +88,8 @@ struct Filtered {
 };
 
 /// Eq. 1 and the variance below it.
-Filtered filterPixel(const Planes& planes, const Illumination& light, const AtrousSettings& settings, int step, Pixel p) {
+Filtered filterPixel(const Planes& planes, const Illumination& light, const AtrousSettings& settings, int step,
+                     Pixel p) {
     const double h[5] = {1.0 / 16, 1.0 / 4, 3.0 / 8, 1.0 / 4, 1.0 / 16};
     Filtered sum;
     double weights = 0;
@@ -102,13 +108,15 @@ Filtered filterPixel(const Planes& planes, const Illumination& light, const Atro
 }
 
 /// Variance of what `mean` and `centred` stand for, over 7x7 pixels around p.
-double windowVariance(const Planes& planes, const AtrousSettings& geometry, const Image& mean, const Image& centred, Pixel p) {
+double windowVariance(const Planes& planes, const AtrousSettings& geometry, const Image& mean, const Image& centred,
+                      Pixel p) {
     double weights = 0, first = 0, second = 0;
     for (int j = -3; j <= 3; ++j)
         for (int i = -3; i <= 3; ++i) {
             const Pixel q{p.x + i, p.y + j};
             if (q.x < 0 || q.y < 0 || q.x >= kExtent.width || q.y >= kExtent.height) continue;
-            const double w = i == 0 && j == 0 ? 1 : weight(planes, planes.light[0], geometry, p, q), m = mean.at(0, q.x, q.y);
+            const double w = i == 0 && j == 0 ? 1 : weight(planes, planes.light[0], geometry, p, q),
+                         m = mean.at(0, q.x, q.y);
             weights += w;
             first += w * m;
             second += w * (centred.at(0, q.x, q.y) + m * m);
@@ -126,9 +134,11 @@ TEST(Atrous, ANormalThatIsNoNumberHarmsNoneButItsPixel) {
         if (isa > best) continue;
         setIsa(isa);
         Illumination out[2];
-        ASSERT_TRUE(atrousLevel(planes.guide(), AtrousSettings(), 2, {&planes.light[0], &planes.light[1]}, {&out[0], &out[1]}, {}));
+        ASSERT_TRUE(atrousLevel(planes.guide(), AtrousSettings(), 2, {&planes.light[0], &planes.light[1]},
+                                {&out[0], &out[1]}, {}));
         for (int component = 0; component < 2; ++component)
-            for (size_t i = 0; i < out[component].rgb.size(); ++i) ASSERT_TRUE(std::isfinite(out[component].rgb.data()[i])) << isaName(isa) << ' ' << i;
+            for (size_t i = 0; i < out[component].rgb.size(); ++i)
+                ASSERT_TRUE(std::isfinite(out[component].rgb.data()[i])) << isaName(isa) << ' ' << i;
     }
     setIsa(best);
 }
@@ -145,15 +155,20 @@ TEST(Atrous, EachLevelIsEquation1OnEveryInstructionSet) {
                 settings.edges = {variant ? 0.5f : 1.0f, variant ? 37.0f : 128.0f, variant ? 1.5f : 4.0f, variant};
                 settings.variancePrefilter = !variant;
                 Illumination out[2];
-                ASSERT_TRUE(atrousLevel(planes.guide(), settings, step, {&planes.light[0], &planes.light[1]}, {&out[0], &out[1]}, {}));
+                ASSERT_TRUE(atrousLevel(planes.guide(), settings, step, {&planes.light[0], &planes.light[1]},
+                                        {&out[0], &out[1]}, {}));
                 for (int component = 0; component < 2; ++component)
                     for (int y = 0; y < kExtent.height; ++y)
                         for (int x = 0; x < kExtent.width; ++x) {
-                            const Filtered expected = filterPixel(planes, planes.light[component], settings, step, {x, y});
-                            for (int c = 0; c < 3; ++c) ASSERT_NEAR(out[component].rgb.at(c, x, y), expected.rgb[c], 3e-4) << x << ' ' << y;
-                            ASSERT_NEAR(out[component].sampleVariance.at(0, x, y), expected.variance, 1e-4) << x << ' ' << y;
+                            const Filtered expected =
+                                filterPixel(planes, planes.light[component], settings, step, {x, y});
+                            for (int c = 0; c < 3; ++c)
+                                ASSERT_NEAR(out[component].rgb.at(c, x, y), expected.rgb[c], 3e-4) << x << ' ' << y;
+                            ASSERT_NEAR(out[component].sampleVariance.at(0, x, y), expected.variance, 1e-4)
+                                << x << ' ' << y;
                             ASSERT_NEAR(out[component].luminance.at(0, x, y),
-                                        0.2126 * expected.rgb[0] + 0.7152 * expected.rgb[1] + 0.0722 * expected.rgb[2], 3e-4);
+                                        0.2126 * expected.rgb[0] + 0.7152 * expected.rgb[1] + 0.0722 * expected.rgb[2],
+                                        3e-4);
                         }
             }
     }
@@ -214,9 +229,11 @@ TEST(SpatialVariance, IsTheWeightedVarianceOfTheWindowOnEveryInstructionSet) {
             for (const Moments& m : moments)
                 for (int y = 0; y < kExtent.height; ++y)
                     for (int x = 0; x < kExtent.width; ++x) {
-                        const double expected = length.at(0, x, y) >= 4 ? m.centred.at(0, x, y)
-                                                                        : windowVariance(planes, geometry, m.mean, m.centred, {x, y});
-                        ASSERT_NEAR(m.variance.at(0, x, y), expected, length.at(0, x, y) >= 4 ? 0 : 1e-4) << x << ' ' << y;
+                        const double expected = length.at(0, x, y) >= 4
+                                                    ? m.centred.at(0, x, y)
+                                                    : windowVariance(planes, geometry, m.mean, m.centred, {x, y});
+                        ASSERT_NEAR(m.variance.at(0, x, y), expected, length.at(0, x, y) >= 4 ? 0 : 1e-4)
+                            << x << ' ' << y;
                     }
         }
     setIsa(best);

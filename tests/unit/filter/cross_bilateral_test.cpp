@@ -59,11 +59,14 @@ TEST(CrossBilateral, EachFilterAndItsRiskAreTheirDefinitions) {
                     for (int i = -radius; i <= radius; ++i) {
                         const Pixel q{p.x + i, p.y + j};
                         if (q.x < 0 || q.y < 0 || q.x >= kExtent.width || q.y >= kExtent.height) continue;
-                        const double zp = scene.signals[Signal::InverseDepth].at(0, p.x, p.y), zq = scene.signals[Signal::InverseDepth].at(0, q.x, q.y);
+                        const double zp = scene.signals[Signal::InverseDepth].at(0, p.x, p.y),
+                                     zq = scene.signals[Signal::InverseDepth].at(0, q.x, q.y);
                         if (zq == 0) continue;
                         const double depth = (zq - zp) / zp / 0.05;
-                        double e = (i * i + j * j) / (sigma * sigma) + squared(scene.light, p, q) / (1.3 * 1.3 * variance) +
-                                   squared(scene.signals[Signal::Normal], p, q) / (0.8 * 0.8) + squared(scene.albedo, p, q) / (0.25 * 0.25) + depth * depth;
+                        double e = (i * i + j * j) / (sigma * sigma) +
+                                   squared(scene.light, p, q) / (1.3 * 1.3 * variance) +
+                                   squared(scene.signals[Signal::Normal], p, q) / (0.8 * 0.8) +
+                                   squared(scene.albedo, p, q) / (0.25 * 0.25) + depth * depth;
                         const double w = std::exp(-0.5 * e);
                         weights += w;
                         for (int c = 0; c < 3; ++c) {

@@ -31,10 +31,11 @@ Signals rowOf(const std::vector<Lobes>& pixels, float light) {
     return signals;
 }
 
-/// Light that a filter spreads from pixel to pixel must not jump by more than a factor of two where a dark texture or metal passes the albedo below
-/// which the signals store it undivided.
+/// Light that a filter spreads from pixel to pixel must not jump by more than a factor of two where a dark texture or
+/// metal passes the albedo below which the signals store it undivided.
 TEST(Demodulation, GivesTheLightWhateverTheAlbedo) {
-    const std::vector<Lobes> lit{{0, 0.0101f}, {0.0101f, 0}, {0.0101f, 0.0101f}, {0.5f, 0.04f}, {1, 0}, {0, 1}, {0.3f, 0}, {0.96f, 0.04f}};
+    const std::vector<Lobes> lit{{0, 0.0101f}, {0.0101f, 0}, {0.0101f, 0.0101f}, {0.5f, 0.04f},
+                                 {1, 0},       {0, 1},       {0.3f, 0},          {0.96f, 0.04f}};
     DemodulatedFrame frame;
     demodulate(rowOf(lit, 2), frame);
     for (int x = 0; x < frame.direct.width(); ++x) {
@@ -53,10 +54,10 @@ TEST(Demodulation, GivesTheLightWhateverTheAlbedo) {
 TEST(Demodulation, WhatWasDroppedIsFilledFromItsNeighbours) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     Signals signals = rowOf({{0.5f, 0}, {0.25f, 0}, {1, 0}, {0, 0}, {0.5f, 0}, {0.5f, 0}}, 2);
-    signals[Signal::Direct].at(0, 1, 0) = nan;       // between 2 and 2
-    signals[Signal::Direct].at(2, 0, 0) *= 3;        // of one neighbour the blue is 6
+    signals[Signal::Direct].at(0, 1, 0) = nan;          // between 2 and 2
+    signals[Signal::Direct].at(2, 0, 0) *= 3;           // of one neighbour the blue is 6
     signals[Signal::Indirect].at(1, 4, 0) = kInfinity;  // between the sky and 1
-    signals[Signal::Emission].at(1, 5, 0) = nan;     // its light is a measurement
+    signals[Signal::Emission].at(1, 5, 0) = nan;        // its light is a measurement
     DemodulatedFrame frame;
     demodulate(signals, frame);
     EXPECT_EQ(frame.droppedPixels, 3);

@@ -42,15 +42,21 @@ TEST(EdgeAvoiding, ALevelIsItsDefinition) {
                         double colour = 0, normal = 0, position = 0;
                         for (int c = 0; c < 3; ++c) {
                             colour += std::pow(double(in.at(c, x, y)) - in.at(c, qx, qy), 2);
-                            normal += std::pow(double(signals[Signal::Normal].at(c, x, y)) - signals[Signal::Normal].at(c, qx, qy), 2);
-                            position += std::pow(double(signals[Signal::Position].at(c, x, y)) - signals[Signal::Position].at(c, qx, qy), 2);
+                            normal += std::pow(
+                                double(signals[Signal::Normal].at(c, x, y)) - signals[Signal::Normal].at(c, qx, qy), 2);
+                            position += std::pow(
+                                double(signals[Signal::Position].at(c, x, y)) - signals[Signal::Position].at(c, qx, qy),
+                                2);
                         }
                         const double w = h[i + 2] * h[j + 2] * std::exp(-colour / std::pow(2.0 / step, 2)) *
-                                         std::exp(-normal / std::pow(0.5 * step, 2)) * std::exp(-position * 0.25 / (0.15 * 0.15));
+                                         std::exp(-normal / std::pow(0.5 * step, 2)) *
+                                         std::exp(-position * 0.25 / (0.15 * 0.15));
                         weights += w;
                         for (int c = 0; c < 3; ++c) sums[c] += w * in.at(c, qx, qy);
                     }
-                for (int c = 0; c < 3; ++c) ASSERT_NEAR(out.at(c, x, y), sums[c] / weights, 2e-5) << isaName(activeIsa()) << ' ' << x << ' ' << y;
+                for (int c = 0; c < 3; ++c)
+                    ASSERT_NEAR(out.at(c, x, y), sums[c] / weights, 2e-5)
+                        << isaName(activeIsa()) << ' ' << x << ' ' << y;
             }
     };
     for (const Isa isa : {Isa::Baseline, Isa::V3, Isa::V4}) {

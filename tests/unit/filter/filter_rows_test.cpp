@@ -62,7 +62,8 @@ Results run(const Signals& first, const Signals& second) {
     EXPECT_TRUE(filterTemporally(first, {}, {&results.frame.direct, &results.frame.indirect}, nullptr, before, {}));
     EXPECT_TRUE(antialiasTemporally(first, {}, results.frame.direct, nullptr, scratch, early, unused, {}));
     demodulate(second, results.frame);
-    EXPECT_TRUE(filterTemporally(second, {}, {&results.frame.direct, &results.frame.indirect}, &before, results.history, {}));
+    EXPECT_TRUE(
+        filterTemporally(second, {}, {&results.frame.direct, &results.frame.indirect}, &before, results.history, {}));
     EXPECT_TRUE(antialiasTemporally(second, {}, results.frame.direct, &early, scratch, next, results.antialiased, {}));
     return results;
 }
@@ -81,7 +82,8 @@ TEST(FilterRows, AreTheSameBytesOnEveryInstructionSet) {
         EXPECT_EQ(results.history.length, expected.history.length) << isaName(isa);
         for (size_t c = 0; c < 2; ++c) {
             EXPECT_EQ(results.history.components[c].colour, expected.history.components[c].colour) << isaName(isa);
-            EXPECT_EQ(results.history.components[c].sampleVariance, expected.history.components[c].sampleVariance) << isaName(isa);
+            EXPECT_EQ(results.history.components[c].sampleVariance, expected.history.components[c].sampleVariance)
+                << isaName(isa);
         }
         EXPECT_EQ(results.antialiased, expected.antialiased) << isaName(isa);
     }

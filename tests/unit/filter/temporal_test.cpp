@@ -32,7 +32,8 @@ Signals wall(Vec2 motion = Vec2(0)) {
     return signals;
 }
 
-ReprojectedTaps tapsAt(const Signals& signals, const Signals& before, int x, int y, ReprojectionSettings settings = {}) {
+ReprojectedTaps tapsAt(const Signals& signals, const Signals& before, int x, int y,
+                       ReprojectionSettings settings = {}) {
     SurfaceRecord record;
     record.reset(before.extent());
     record.copyRows(before, 0, before.extent().height);
@@ -91,7 +92,8 @@ TEST(Reprojection, MasksTellWhichTapsWereRefusedAndWhy) {
     before.ids(Signal::ObjectId).at(0, 11, 6) = 7;
     before[Signal::InverseDepth].at(0, 10, 5) = before[Signal::InverseDepth].at(0, 11, 6) = 0.6f;
     EXPECT_EQ(refusalMasks(tapsAt(signals, before, 10, 5).refusals), (std::array<float, 4>{8, 1 + 8, 0, 0}));
-    EXPECT_EQ(refusalMasks(tapsAt(wall({-0.5f, 0}), wall(), 0, 5).refusals), (std::array<float, 4>{0, 0, 0, 1})) << "those below have no weight";
+    EXPECT_EQ(refusalMasks(tapsAt(wall({-0.5f, 0}), wall(), 0, 5).refusals), (std::array<float, 4>{0, 0, 0, 1}))
+        << "those below have no weight";
 }
 
 TEST(Reprojection, TheWideFallbackFindsThinGeometry) {
@@ -151,7 +153,8 @@ TEST(TemporalFilter, ADroppedSampleLeavesTheHistoryAsItIs) {
     for (int frame = 0; frame < 3; ++frame) {
         sample.fill(static_cast<float>(frame + 1));
         auto [previous, next] = history.begin(frame, frame == 0);
-        ASSERT_TRUE(filterTemporally(signals, {}, {&sample}, previous, next, {}, {.dropped = frame == 1 ? nullptr : &dropped}));
+        ASSERT_TRUE(
+            filterTemporally(signals, {}, {&sample}, previous, next, {}, {.dropped = frame == 1 ? nullptr : &dropped}));
         history.commit();
         const TemporalHistory& now = history.current();
         const float colour = now.components[0].colour.at(0, 7, 7), beside = now.components[0].colour.at(0, 8, 7);
@@ -168,7 +171,8 @@ TEST(TemporalFilter, ADroppedSampleLeavesTheHistoryAsItIs) {
 }
 
 TEST(TemporalFilter, WarmUpIsTheArithmeticMean) {
-    const TemporalSettings settings{.colourAlpha = 0.01f, .momentsAlpha = 0.01f, .arithmeticWarmUp = true, .reprojection = {}};
+    const TemporalSettings settings{
+        .colourAlpha = 0.01f, .momentsAlpha = 0.01f, .arithmeticWarmUp = true, .reprojection = {}};
     const Signals signals = wall();
     FrameHistory<TemporalHistory> history;
     double sum = 0;
@@ -194,8 +198,8 @@ TEST(FrameHistory, IsATransaction) {
     EXPECT_EQ(history.begin(0, false).previous, nullptr);
     EXPECT_EQ(commit(0, 10), -1);
     EXPECT_EQ(commit(1, 11), 10);
-    EXPECT_EQ(commit(1, 12), 10);             // the same number again: from the same history
-    history.begin(1, false).next = 99;        // begun and left
+    EXPECT_EQ(commit(1, 12), 10);       // the same number again: from the same history
+    history.begin(1, false).next = 99;  // begun and left
     history.begin(2, false).next = 98;
     EXPECT_EQ(history.current(), 12);
     EXPECT_EQ(commit(2, 13), 12);
@@ -224,8 +228,7 @@ TEST(Taa, HistoryIsReadBetweenPixels) {
     for (const TaaSettings::History filter : {TaaSettings::History::Bilinear, TaaSettings::History::CatmullRom}) {
         const Signals signals = wall({0.5f, 0});
         Image colour(kExtent, 3), history(kExtent, 3), scratch, next, out;
-        for (int64_t i = 0; i < kExtent.area(); ++i)
-            history.data()[i] = 0.01f * static_cast<float>(i % kExtent.width);
+        for (int64_t i = 0; i < kExtent.area(); ++i) history.data()[i] = 0.01f * static_cast<float>(i % kExtent.width);
         const TaaSettings settings{.alpha = 0.01f, .clip = false, .history = filter};
         ASSERT_TRUE(antialiasTemporally(signals, settings, colour, &history, scratch, next, out, {}));
         EXPECT_NEAR(next.at(0, 10, 8), 0.99f * 0.105f, 1e-5);

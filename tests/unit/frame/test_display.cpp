@@ -25,9 +25,7 @@ std::vector<uint8_t> pixel(const Image8& image, int x, int y) {
     return {begin, begin + 4};
 }
 
-int levels(uint8_t a, float b) {
-    return std::abs(static_cast<int>(a) - static_cast<int>(b * 255 + 0.5f));
-}
+int levels(uint8_t a, float b) { return std::abs(static_cast<int>(a) - static_cast<int>(b * 255 + 0.5f)); }
 
 std::vector<Isa> machineIsas() {
     std::vector<Isa> list;
@@ -112,7 +110,8 @@ TEST(Display, InstructionSetsAndThreadsGiveTheSameBytes) {
     Image image = wideImage({257, 89});
     image.at(1, 5, 5) = kNan;
     const std::pair<const char*, const char*> kinds[] = {{"RGB", "none"},   {"RGB", "viridis"}, {"XYZ", "none"},
-                                                         {"XYZ", "signed"}, {"XYZ", "wheel"},   {"XYZ", "cyclic"}, {"XYZ", "motion"}};
+                                                         {"XYZ", "signed"}, {"XYZ", "wheel"},   {"XYZ", "cyclic"},
+                                                         {"XYZ", "motion"}};
     for (const auto& [channels, map] : kinds)
         for (int curve = 0; curve < 4; ++curve) {
             DisplaySettings settings;
@@ -334,8 +333,8 @@ TEST(Display, AFrameTakesMilliseconds) {
             convert(image, "RGB", "none", settings, out);
             best = std::min(best, timer.elapsedMs());
         }
-        std::cout << "1280x720, " << (curve == ToneCurve::Aces ? "ACES" : "AgX") << ", one thread, " << isaName(activeIsa())
-                  << ": " << best << " ms\n";
+        std::cout << "1280x720, " << (curve == ToneCurve::Aces ? "ACES" : "AgX") << ", one thread, "
+                  << isaName(activeIsa()) << ": " << best << " ms\n";
         // The budget is 8 ms; the bound leaves room for sanitizers and busy machines.
         EXPECT_LT(best, 200);
     }

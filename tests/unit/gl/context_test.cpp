@@ -119,9 +119,7 @@ TEST_P(Contexts, reportShadersThatDoNotCompile) {
 INSTANTIATE_TEST_SUITE_P(Kinds, Contexts, testing::Values(ContextKind::Egl, ContextKind::OsMesa),
                          [](const auto& kind) { return kind.param == ContextKind::Egl ? "Egl" : "OsMesa"; });
 
-TEST(HeadlessContext, isFoundOnAnyMachineWithMesa) {
-    EXPECT_NO_THROW(createHeadlessContext());
-}
+TEST(HeadlessContext, isFoundOnAnyMachineWithMesa) { EXPECT_NO_THROW(createHeadlessContext()); }
 
 }  // namespace
 }  // namespace lumi

@@ -83,9 +83,7 @@ TEST_P(Drawing, putsImGuiRectanglesWhereTheyBelong) {
     EXPECT_GT(white, 20) << "the text is missing";
 }
 
-TEST_P(Drawing, isTheSameBytesAgain) {
-    EXPECT_EQ(drawImGui(gl(), {120, 90}).rgba, drawImGui(gl(), {120, 90}).rgba);
-}
+TEST_P(Drawing, isTheSameBytesAgain) { EXPECT_EQ(drawImGui(gl(), {120, 90}).rgba, drawImGui(gl(), {120, 90}).rgba); }
 
 std::shared_ptr<const Image8> checker(Colour even, Colour odd) {
     auto image = std::make_shared<Image8>();

@@ -20,7 +20,8 @@ uintptr_t addressOf(const void* block) { return reinterpret_cast<uintptr_t>(bloc
 }  // namespace
 
 TEST(PlaneMemory, IsWholeAndBeginsOnACacheLine) {
-    for (const size_t bytes : {size_t(0), size_t(1), kLine, kPage, size_t(65535), size_t(65536), kHugePage - 1, kHugePage, 3 * kHugePage + 5}) {
+    for (const size_t bytes : {size_t(0), size_t(1), kLine, kPage, size_t(65535), size_t(65536), kHugePage - 1,
+                               kHugePage, 3 * kHugePage + 5}) {
         void* const block = allocatePlaneMemory(bytes);
         ASSERT_NE(block, nullptr);
         EXPECT_EQ(addressOf(block) % kLine, 0u) << bytes;

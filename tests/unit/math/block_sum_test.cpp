@@ -7,9 +7,7 @@
 namespace lumi {
 namespace {
 
-double value(uint64_t index) {
-    return unitFloat(pcgHash(static_cast<uint32_t>(index))) * 1e3 + 1e-9;
-}
+double value(uint64_t index) { return unitFloat(pcgHash(static_cast<uint32_t>(index))) * 1e3 + 1e-9; }
 
 double sumOf(uint64_t first, uint64_t count) {
     BlockSum<double> sum;

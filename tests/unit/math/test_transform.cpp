@@ -9,12 +9,8 @@
 namespace lumi {
 namespace {
 
-float random(uint32_t i) {
-    return unitFloat(pcgHash(i));
-}
-Vec3 randomDirection(uint32_t i) {
-    return sampleSphere({random(2 * i), random(2 * i + 1)});
-}
+float random(uint32_t i) { return unitFloat(pcgHash(i)); }
+Vec3 randomDirection(uint32_t i) { return sampleSphere({random(2 * i), random(2 * i + 1)}); }
 void expectNear(const Vec3& a, const Vec3& b, float tolerance) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance);
 }
@@ -84,8 +80,9 @@ TEST(Transform, LookAtLooksAlongMinusZ) {
 }
 
 TEST(Transform, LookAtIsAFrameWhateverItIsGiven) {
-    const Vec3 vectors[] = {Vec3(0),          Vec3(0, 1, 0),        Vec3(0, 0, 1),        Vec3(1e-30f, 0, 0), Vec3(3e38f, -3e38f, 0),
-                            Vec3(0, 1e20f, 0), Vec3(1e-9f, 1, 1e-9f), Vec3(1e9f, 1e9f, -1e9f), Vec3(kInfinity, 0, 0)};
+    const Vec3 vectors[] = {
+        Vec3(0),           Vec3(0, 1, 0),         Vec3(0, 0, 1),           Vec3(1e-30f, 0, 0),   Vec3(3e38f, -3e38f, 0),
+        Vec3(0, 1e20f, 0), Vec3(1e-9f, 1, 1e-9f), Vec3(1e9f, 1e9f, -1e9f), Vec3(kInfinity, 0, 0)};
     for (const Vec3& eye : vectors)
         for (const Vec3& target : vectors)
             for (const Vec3& up : vectors) {

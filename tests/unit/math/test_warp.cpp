@@ -28,9 +28,7 @@ double uniformity(uint32_t count, uint32_t seed, const std::function<double(Vec2
 }
 
 /// Cell of (u, v) in [0,1)^2 on a 20x20 grid.
-double grid(double u, double v) {
-    return std::min(19.0, std::floor(u * 20)) * 20 + std::min(19.0, std::floor(v * 20));
-}
+double grid(double u, double v) { return std::min(19.0, std::floor(u * 20)) * 20 + std::min(19.0, std::floor(v * 20)); }
 double turn(double y, double x) {
     const double angle = std::atan2(y, x) / (2 * M_PI);
     return angle < 0 ? angle + 1 : angle;

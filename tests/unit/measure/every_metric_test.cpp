@@ -14,19 +14,19 @@ namespace lumi {
 namespace {
 
 /// How the number follows from the map: its mean over the pixels that count, their root mean square, minus the decibels
-/// of its mean, one minus its mean over the centres of windows, the share of edges (where it is above 0) that round to 63
-/// percent at most. That of MS-SSIM does not: a product of means is no mean of products.
+/// of its mean, one minus its mean over the centres of windows, the share of edges (where it is above 0) that round to
+/// 63 percent at most. That of MS-SSIM does not: a product of means is no mean of products.
 enum class Map { Mean, RootOfMeanSquare, Decibels, Windows, Edges, PixelsAlone };
 
 struct Row {
     const char* id;
     plain::Result (*definition)(const ImagePair&);
-    double tolerance;       ///< of the value
-    double ofIdentical;     ///< exactly; NaN: as the reference has it
+    double tolerance;    ///< of the value
+    double ofIdentical;  ///< exactly; NaN: as the reference has it
     bool symmetric, higherIsBetter;
-    double low, high;       ///< no value is outside
+    double low, high;  ///< no value is outside
     Map map;
-    double ofPixels;        ///< tolerance of a map's pixel
+    double ofPixels;  ///< tolerance of a map's pixel
     Extent2 extent{37, 29};
 };
 
@@ -53,7 +53,8 @@ Image picture(Extent2 extent, uint32_t seed, float noise) {
     for (int c = 0; c < 3; ++c)
         for (int y = 0; y < extent.height; ++y)
             for (int x = 0; x < extent.width; ++x) {
-                const float wave = 0.5f + 0.4f * std::sin(0.21f * static_cast<float>(x + 2 * c)) * std::cos(0.17f * static_cast<float>(y));
+                const float wave = 0.5f + 0.4f * std::sin(0.21f * static_cast<float>(x + 2 * c)) *
+                                              std::cos(0.17f * static_cast<float>(y));
                 const float edge = (x / 13 + y / 11) % 2 ? 1.6f : 0.5f;
                 image.at(c, x, y) = std::max(0.001f, wave * edge + noise * uniform(generator));
             }
@@ -65,7 +66,8 @@ ImagePair pairFor(const Row& row) { return {picture(row.extent, 2, 0.15f), pictu
 Image maskFor(Extent2 extent) {
     Image mask(extent, 1);
     for (int y = 0; y < extent.height; ++y)
-        for (int x = 0; x < extent.width; ++x) mask.at(0, x, y) = x > extent.width / 3 && (x + y) % 5 != 0 ? 1.0f : 0.5f;
+        for (int x = 0; x < extent.width; ++x)
+            mask.at(0, x, y) = x > extent.width / 3 && (x + y) % 5 != 0 ? 1.0f : 0.5f;
     return mask;
 }
 
@@ -141,8 +143,15 @@ TEST_P(EveryMetric, BrokenPixelsAreCountedAndCountForNothing) {
     ImagePair broken = pairFor(row), without = pairFor(row);
     without.mask = Image(row.extent, 1);
     without.mask.fill(1);
-    const struct { int x, y; float value; bool inReference; } places[] = {
-        {3, 4, nan, false}, {20, 9, infinite, false}, {11, 20, -infinite, false}, {8, 13, nan, true}, {25, 25, infinite, true}};
+    const struct {
+        int x, y;
+        float value;
+        bool inReference;
+    } places[] = {{3, 4, nan, false},
+                  {20, 9, infinite, false},
+                  {11, 20, -infinite, false},
+                  {8, 13, nan, true},
+                  {25, 25, infinite, true}};
     for (const auto& place : places) {
         (place.inReference ? broken.reference : broken.image).at(place.x % 3, place.x, place.y) = place.value;
         without.mask.at(0, place.x, place.y) = 0;
@@ -243,12 +252,14 @@ TEST(MsSsim, SaysHowManyScalesFit) {
     for (const auto& [side, scales] : {std::pair{11, 1}, {20, 1}, {21, 2}, {160, 4}, {161, 5}, {170, 5}}) {
         ImagePair pair{picture({170, side}, 2, 0.1f), picture({170, side}, 1, 0)};
         pair.prepare();
-        EXPECT_EQ(measureMsSsim(pair, false).details.back(), (std::pair<std::string, double>{"scales", scales})) << side;
+        EXPECT_EQ(measureMsSsim(pair, false).details.back(), (std::pair<std::string, double>{"scales", scales}))
+            << side;
     }
 }
 
 TEST_P(EveryMetric, ImagesOfAnySizeGiveAValueOrSayWhyNot) {
-    for (const Extent2 extent : {Extent2{1, 1}, Extent2{2, 9}, Extent2{10, 40}, Extent2{11, 11}, Extent2{23, 12}, Extent2{267, 13}}) {
+    for (const Extent2 extent :
+         {Extent2{1, 1}, Extent2{2, 9}, Extent2{10, 40}, Extent2{11, 11}, Extent2{23, 12}, Extent2{267, 13}}) {
         ImagePair pair{picture(extent, 2, 0.1f), picture(extent, 1, 0), {}, 0};
         pair.prepare();
         const Measurement seen = metric.measure(pair, true);

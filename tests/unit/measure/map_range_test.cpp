@@ -39,7 +39,8 @@ TEST(MapRange, ShowsAFewWrongPixels) {
 }
 
 TEST(MapRange, MapsWithAScaleOfTheirOwnKeepIt) {
-    for (const char* id : {"ssim", "ms_ssim", "flip", "hdr_flip", "cpbd"}) EXPECT_EQ(highOf(id, {mapOf(0.01f, 0.3f, 50)}), 1) << id;
+    for (const char* id : {"ssim", "ms_ssim", "flip", "hdr_flip", "cpbd"})
+        EXPECT_EQ(highOf(id, {mapOf(0.01f, 0.3f, 50)}), 1) << id;
     EXPECT_EQ(MapRange(findMetric("flip")).display().colourMap, findMetric("flip").mapColours);
 }
 

@@ -23,7 +23,8 @@ ImagePair pairThatDiffersWhereNothingCounts(Extent2 extent) {
     for (int y = 0; y < extent.height; ++y)
         for (int x = 0; x < extent.width; ++x) {
             if (x < extent.width / 2) pair.mask.at(0, x, y) = 1;
-            else for (int c = 0; c < 3; ++c) pair.image.at(c, x, y) *= 0.2f;
+            else
+                for (int c = 0; c < 3; ++c) pair.image.at(c, x, y) *= 0.2f;
         }
     pair.prepare();
     return pair;
@@ -56,7 +57,8 @@ TEST(Masks, MsSsimOfOneScaleIsTheMeanOfWindowsThatCount) {
     // 16 pixels a side: one scale fits, so that MS-SSIM is SSIM.
     ImagePair pair{randomImage({16, 16}, 3), randomImage({16, 16}, 3), Image({16, 16}, 1), 0};
     const Image noise = randomImage({16, 16}, 4);
-    for (size_t i = 0; i < noise.size(); ++i) pair.image.data()[i] += 0.2f * noise.data()[i];  // alike: no value below 0
+    for (size_t i = 0; i < noise.size(); ++i)
+        pair.image.data()[i] += 0.2f * noise.data()[i];  // alike: no value below 0
     for (int x = 0; x < 8; ++x)
         for (int y = 0; y < 16; ++y) pair.mask.at(0, x, y) = 1;
     pair.prepare();
@@ -78,7 +80,8 @@ Image ramps(int width, float contrast = 200) {
     Image gray({128, 128}, 1);
     for (int y = 0; y < 128; ++y)
         for (int x = 0; x < 128; ++x) {
-            const float t = std::clamp(static_cast<float>(x % 32 - 16 + width / 2) / static_cast<float>(width), 0.0f, 1.0f);
+            const float t =
+                std::clamp(static_cast<float>(x % 32 - 16 + width / 2) / static_cast<float>(width), 0.0f, 1.0f);
             gray.at(0, x, y) = 20 + contrast * (x / 32 % 2 ? 1 - t : t);
         }
     return gray;

@@ -70,7 +70,8 @@ Windows windowsOf(const Plane& a, const Plane& b) {
             double ma = 0, mb = 0, aa = 0, bb = 0, ab = 0;
             for (int j = 0; j < 11; ++j)
                 for (int i = 0; i < 11; ++i) {
-                    const double w = line[i] * line[j] / (total * total), va = a.at(x + i, y + j), vb = b.at(x + i, y + j);
+                    const double w = line[i] * line[j] / (total * total), va = a.at(x + i, y + j),
+                                 vb = b.at(x + i, y + j);
                     ma += w * va, mb += w * vb, aa += w * va * va, bb += w * vb * vb, ab += w * va * vb;
                 }
             const double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
@@ -84,7 +85,9 @@ Plane halved(const Plane& in) {
     Plane out((in.width + 1) / 2, (in.height + 1) / 2);
     for (int y = 0; y < out.height; ++y)
         for (int x = 0; x < out.width; ++x)
-            out.at(x, y) = (in.near(2 * x, 2 * y) + in.near(2 * x + 1, 2 * y) + in.near(2 * x, 2 * y + 1) + in.near(2 * x + 1, 2 * y + 1)) / 4;
+            out.at(x, y) = (in.near(2 * x, 2 * y) + in.near(2 * x + 1, 2 * y) + in.near(2 * x, 2 * y + 1) +
+                            in.near(2 * x + 1, 2 * y + 1)) /
+                           4;
     return out;
 }
 
@@ -107,28 +110,34 @@ Plane countedPlane(const ImagePair& pair) {
 
 double Plane::near(int x, int y) const { return at(std::clamp(x, 0, width - 1), std::clamp(y, 0, height - 1)); }
 
-Result mse(const ImagePair& pair) { return meanOverChannels(pair, linear(pair.image), linear(pair.reference), squared); }
+Result mse(const ImagePair& pair) {
+    return meanOverChannels(pair, linear(pair.image), linear(pair.reference), squared);
+}
 
 Result rmse(const ImagePair& pair) {
-    Result result = meanOverChannels(pair, shown(pair.image, pair.exposureEv), shown(pair.reference, pair.exposureEv), squared);
+    Result result =
+        meanOverChannels(pair, shown(pair.image, pair.exposureEv), shown(pair.reference, pair.exposureEv), squared);
     result.value = std::sqrt(result.value);
     for (double& v : result.map.values) v = std::sqrt(v);
     return result;
 }
 
 Result psnr(const ImagePair& pair) {
-    Result result = meanOverChannels(pair, shown(pair.image, pair.exposureEv), shown(pair.reference, pair.exposureEv), squared);
+    Result result =
+        meanOverChannels(pair, shown(pair.image, pair.exposureEv), shown(pair.reference, pair.exposureEv), squared);
     result.value = -10 * std::log10(result.value);
     return result;
 }
 
 Result mae(const ImagePair& pair) {
-    return meanOverChannels(pair, linear(pair.image), linear(pair.reference), [](double a, double b) { return std::abs(a - b); });
+    return meanOverChannels(pair, linear(pair.image), linear(pair.reference),
+                            [](double a, double b) { return std::abs(a - b); });
 }
 
 Result smape(const ImagePair& pair) {
-    return meanOverChannels(pair, linear(pair.image), linear(pair.reference),
-                            [](double a, double b) { return 2 * std::abs(a - b) / (std::abs(a) + std::abs(b) + 0.01); });
+    return meanOverChannels(pair, linear(pair.image), linear(pair.reference), [](double a, double b) {
+        return 2 * std::abs(a - b) / (std::abs(a) + std::abs(b) + 0.01);
+    });
 }
 
 Result relmse(const ImagePair& pair) {
@@ -168,7 +177,8 @@ Result msSsim(const ImagePair& pair) {
             product *= std::pow(std::max(meanOfWindows(values, counted), 0.0), exponents[scale]);
             for (int y = 0; y < local.height; ++y)  // the window around the pixel, or the nearest one inside
                 for (int x = 0; x < local.width; ++x)
-                    local.at(x, y) *= std::pow(std::max(values.near((x >> scale) - 5, (y >> scale) - 5), 0.0), exponents[scale]);
+                    local.at(x, y) *=
+                        std::pow(std::max(values.near((x >> scale) - 5, (y >> scale) - 5), 0.0), exponents[scale]);
             a = halved(a), b = halved(b), counted = halved(counted);
         }
         result.value += product / 3;
@@ -183,19 +193,21 @@ Result cpbd(const ImagePair& pair) {
     const int w = pair.image.width(), h = pair.image.height();
     Plane gray(w, h), strength(w, h);
     for (size_t i = 0; i < gray.values.size(); ++i)
-        gray.values[i] = std::round(255 * (0.299 * rgb[0].values[i] + 0.587 * rgb[1].values[i] + 0.114 * rgb[2].values[i]));
+        gray.values[i] =
+            std::round(255 * (0.299 * rgb[0].values[i] + 0.587 * rgb[1].values[i] + 0.114 * rgb[2].values[i]));
     for (int y = 1; y < h - 1; ++y)
         for (int x = 1; x < w - 1; ++x) {
             double slope = 0;
-            for (int j = -1; j <= 1; ++j) slope += (j == 0 ? 2 : 1) * (gray.at(x + 1, y + j) - gray.at(x - 1, y + j)) / 8;
+            for (int j = -1; j <= 1; ++j)
+                slope += (j == 0 ? 2 : 1) * (gray.at(x + 1, y + j) - gray.at(x - 1, y + j)) / 8;
             strength.at(x, y) = slope * slope;
         }
     const auto isEdge = [&](int x, int y) {
         if (x <= 0 || y <= 0 || x >= w - 1 || y >= h - 1) return false;
         const double right = gray.at(x + 1, y) - gray.at(x - 1, y), down = gray.at(x, y + 1) - gray.at(x, y - 1);
         const double degrees = right == 0 ? 0 : std::atan2(std::abs(down), std::abs(right)) * 180 / std::numbers::pi;
-        return strength.at(x, y) > 4 && strength.at(x, y) > strength.at(x - 1, y) && strength.at(x, y) >= strength.at(x + 1, y) &&
-               degrees < 22.5;
+        return strength.at(x, y) > 4 && strength.at(x, y) > strength.at(x - 1, y) &&
+               strength.at(x, y) >= strength.at(x + 1, y) && degrees < 22.5;
     };
     const auto reach = [&](int x, int y, int step, double sign) {
         for (int k = 0;; ++k) {

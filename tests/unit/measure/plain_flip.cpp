@@ -35,7 +35,8 @@ Plane filtered(const Plane& in, const Plane& filter) {
         for (int x = 0; x < in.width; ++x) {
             double sum = 0;
             for (int j = -radius; j <= radius; ++j)
-                for (int i = -radius; i <= radius; ++i) sum += filter.at(i + radius, j + radius) * in.near(x + i, y + j);
+                for (int i = -radius; i <= radius; ++i)
+                    sum += filter.at(i + radius, j + radius) * in.near(x + i, y + j);
             out.at(x, y) = sum;
         }
     return out;
@@ -43,7 +44,8 @@ Plane filtered(const Plane& in, const Plane& filter) {
 
 // IEC 61966-2-1 with its white point (FLIP's own digits).
 Colour xyzOf(const Colour& c) {
-    return {(10135552 * c[0] + 8788810 * c[1] + 4435075 * c[2]) / 24577794, (2613072 * c[0] + 8788810 * c[1] + 887015 * c[2]) / 12288897,
+    return {(10135552 * c[0] + 8788810 * c[1] + 4435075 * c[2]) / 24577794,
+            (2613072 * c[0] + 8788810 * c[1] + 887015 * c[2]) / 12288897,
             (1425312 * c[0] + 8788810 * c[1] + 70074185 * c[2]) / 73733382};
 }
 const Colour kWhite = xyzOf({1, 1, 1});
@@ -52,7 +54,8 @@ const Colour kWhite = xyzOf({1, 1, 1});
 Colour rgbOf(const Colour& xyz) {
     const Colour r = xyzOf({1, 0, 0}), g = xyzOf({0, 1, 0}), b = xyzOf({0, 0, 1});
     const auto det = [](const Colour& p, const Colour& q, const Colour& s) {
-        return p[0] * (q[1] * s[2] - q[2] * s[1]) - q[0] * (p[1] * s[2] - p[2] * s[1]) + s[0] * (p[1] * q[2] - p[2] * q[1]);
+        return p[0] * (q[1] * s[2] - q[2] * s[1]) - q[0] * (p[1] * s[2] - p[2] * s[1]) +
+               s[0] * (p[1] * q[2] - p[2] * q[1]);
     };
     const double whole = det(r, g, b);
     return {det(xyz, g, b) / whole, det(r, xyz, b) / whole, det(r, g, xyz) / whole};
@@ -60,14 +63,18 @@ Colour rgbOf(const Colour& xyz) {
 
 Colour opponent(const Colour& rgb) {
     const Colour c = xyzOf(rgb);
-    return {116 * c[1] / kWhite[1] - 16, 500 * (c[0] / kWhite[0] - c[1] / kWhite[1]), 200 * (c[1] / kWhite[1] - c[2] / kWhite[2])};
+    return {116 * c[1] / kWhite[1] - 16, 500 * (c[0] / kWhite[0] - c[1] / kWhite[1]),
+            200 * (c[1] / kWhite[1] - c[2] / kWhite[2])};
 }
 
 /// CIELab with Hunt's adjustment of the chroma by lightness.
 Colour hunt(const Colour& rgb) {
     const Colour c = xyzOf(rgb);
-    const auto curve = [](double t) { return t > std::pow(6.0 / 29, 3) ? std::cbrt(t) : t / (3 * (6.0 / 29) * (6.0 / 29)) + 4.0 / 29; };
-    const double x = curve(c[0] / kWhite[0]), y = curve(c[1] / kWhite[1]), z = curve(c[2] / kWhite[2]), l = 116 * y - 16;
+    const auto curve = [](double t) {
+        return t > std::pow(6.0 / 29, 3) ? std::cbrt(t) : t / (3 * (6.0 / 29) * (6.0 / 29)) + 4.0 / 29;
+    };
+    const double x = curve(c[0] / kWhite[0]), y = curve(c[1] / kWhite[1]), z = curve(c[2] / kWhite[2]),
+                 l = 116 * y - 16;
     return {l, 0.01 * l * 500 * (x - y), 0.01 * l * 200 * (y - z)};
 }
 
@@ -85,7 +92,9 @@ Planes mapped(const Planes& in, const std::function<Colour(const Colour&)>& f) {
     return out;
 }
 
-struct Sensitivity { double a1, b1, a2, b2; };
+struct Sensitivity {
+    double a1, b1, a2, b2;
+};
 
 /// Colours after the contrast sensitivity filters, in Hunt-adjusted CIELab (sec. 4.1).
 Planes perceived(const Planes& linear) {
@@ -96,7 +105,8 @@ Planes perceived(const Planes& linear) {
         const Sensitivity& s = table[c];
         Plane filter = filterOf(radius, [&](int x, int y) {
             const double d = (x * x + y * y) / (kPerDegree * kPerDegree);
-            return s.a1 * std::sqrt(kPi / s.b1) * std::exp(-kPi * kPi * d / s.b1) + s.a2 * std::sqrt(kPi / s.b2) * std::exp(-kPi * kPi * d / s.b2);
+            return s.a1 * std::sqrt(kPi / s.b1) * std::exp(-kPi * kPi * d / s.b1) +
+                   s.a2 * std::sqrt(kPi / s.b2) * std::exp(-kPi * kPi * d / s.b2);
         });
         normalise(filter);
         planes[c] = filtered(planes[c], filter);
@@ -130,21 +140,25 @@ Plane features(const Planes& linear, bool second) {
 /// Error of each pixel of two images in linear light, in [0, 1].
 Plane errorOf(const Planes& a, const Planes& b) {
     const Planes colourA = perceived(a), colourB = perceived(b);
-    const Plane edgesA = features(a, false), edgesB = features(b, false), pointsA = features(a, true), pointsB = features(b, true);
+    const Plane edgesA = features(a, false), edgesB = features(b, false), pointsA = features(a, true),
+                pointsB = features(b, true);
     const double most = std::pow(hyab(hunt({0, 1, 0}), hunt({0, 0, 1})), 0.7);
     Plane out(a[0].width, a[0].height);
     for (int y = 0; y < out.height; ++y)
         for (int x = 0; x < out.width; ++x) {
             const double d = std::pow(hyab(at(colourA, x, y), at(colourB, x, y)), 0.7);
-            const double colour = d < 0.4 * most ? 0.95 / (0.4 * most) * d : 0.95 + (d - 0.4 * most) / (most - 0.4 * most) * 0.05;
-            const double feature = std::max(std::abs(edgesA.at(x, y) - edgesB.at(x, y)), std::abs(pointsA.at(x, y) - pointsB.at(x, y)));
+            const double colour =
+                d < 0.4 * most ? 0.95 / (0.4 * most) * d : 0.95 + (d - 0.4 * most) / (most - 0.4 * most) * 0.05;
+            const double feature =
+                std::max(std::abs(edgesA.at(x, y) - edgesB.at(x, y)), std::abs(pointsA.at(x, y) - pointsB.at(x, y)));
             out.at(x, y) = std::pow(colour, 1 - std::sqrt(feature / std::sqrt(2.0)));
         }
     return out;
 }
 
 Planes planesOf(const Image& image, const std::function<double(double)>& f) {
-    Planes out{Plane(image.width(), image.height()), Plane(image.width(), image.height()), Plane(image.width(), image.height())};
+    Planes out{Plane(image.width(), image.height()), Plane(image.width(), image.height()),
+               Plane(image.width(), image.height())};
     for (int c = 0; c < 3; ++c)
         for (int y = 0; y < image.height(); ++y)
             for (int x = 0; x < image.width(); ++x) out[static_cast<size_t>(c)].at(x, y) = f(image.at(c, x, y));
@@ -172,7 +186,8 @@ std::pair<double, double> exposureRange(const Image& reference) {
     std::vector<double> light;
     for (int y = 0; y < reference.height(); ++y)
         for (int x = 0; x < reference.width(); ++x)
-            light.push_back(0.2126 * reference.at(0, x, y) + 0.7152 * reference.at(1, x, y) + 0.0722 * reference.at(2, x, y));
+            light.push_back(0.2126 * reference.at(0, x, y) + 0.7152 * reference.at(1, x, y) +
+                            0.0722 * reference.at(2, x, y));
     std::sort(light.begin(), light.end());
     const double median = (light[(light.size() - 1) / 2] + light[light.size() / 2]) / 2;
     return {std::log2(low / light.back()), std::log2(low / median)};

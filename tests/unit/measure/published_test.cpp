@@ -88,8 +88,10 @@ TEST(Published, RmseOfTheCamera) {
 TEST(Published, SsimAndMsSsimOfTheCheckerboards) {
     REQUIRE_ASSET("ssim_tf_checkerboard");
     const std::string stem = "ssim_tf_checkerboard/checkerboard";
-    const struct { int a, b; double ssim, msSsim; } rows[] = {
-        {1, 2, 0.230880, 0.091016}, {1, 3, 0.231153, 0.091025}, {2, 3, 0.996828, 0.999567}};
+    const struct {
+        int a, b;
+        double ssim, msSsim;
+    } rows[] = {{1, 2, 0.230880, 0.091016}, {1, 3, 0.231153, 0.091025}, {2, 3, 0.996828, 0.999567}};
     for (const auto& row : rows) {
         const ImagePair pair = load(stem + std::to_string(row.a) + ".png", stem + std::to_string(row.b) + ".png");
         EXPECT_NEAR(measureSsim(pair, false).value, row.ssim, 5e-4) << row.a << row.b;

@@ -28,7 +28,8 @@ Image picture(float shiftX, float shiftY) {
     for (int c = 0; c < 3; ++c)
         for (int y = 0; y < kExtent.height; ++y)
             for (int x = 0; x < kExtent.width; ++x)
-                image.at(c, x, y) = 0.4f + 0.004f * (static_cast<float>(x) + shiftX) + 0.003f * (static_cast<float>(y) + shiftY);
+                image.at(c, x, y) =
+                    0.4f + 0.004f * (static_cast<float>(x) + shiftX) + 0.003f * (static_cast<float>(y) + shiftY);
     return image;
 }
 
@@ -88,9 +89,11 @@ TEST(Reprojected, EqualsBilinearLookupsWrittenOut) {
     int count = 0;
     for (int y = 0; y < kExtent.height; ++y)
         for (int x = 0; x < kExtent.width; ++x) {
-            const double px = static_cast<float>(x) + motion.at(0, x, y), py = static_cast<float>(y) + motion.at(1, x, y);
+            const double px = static_cast<float>(x) + motion.at(0, x, y),
+                         py = static_cast<float>(y) + motion.at(1, x, y);
             if (px < 0 || py < 0 || px > kExtent.width - 1 || py > kExtent.height - 1) continue;
-            const int l = std::min(static_cast<int>(px), kExtent.width - 2), t = std::min(static_cast<int>(py), kExtent.height - 2);
+            const int l = std::min(static_cast<int>(px), kExtent.width - 2),
+                      t = std::min(static_cast<int>(py), kExtent.height - 2);
             const double fx = px - l, fy = py - t;
             const double earlier = (1 - fy) * ((1 - fx) * shown(before, l, t) + fx * shown(before, l + 1, t)) +
                                    fy * ((1 - fx) * shown(before, l, t + 1) + fx * shown(before, l + 1, t + 1));
@@ -130,7 +133,8 @@ TEST(Reprojected, UncoveredPointsDoNotCount) {
 
 /// The pair with everything that the reprojected error looks at.
 struct Moving {
-    Image now = noise(30), before = noise(31), motion{kExtent, 3}, depth{kExtent, 1}, previousDepth{kExtent, 1}, mask{kExtent, 1};
+    Image now = noise(30), before = noise(31), motion{kExtent, 3}, depth{kExtent, 1}, previousDepth{kExtent, 1},
+          mask{kExtent, 1};
     Moving() {
         for (int64_t i = 0; i < kExtent.area(); ++i) motion.data()[i] = 1;
         depth.fill(3), previousDepth.fill(3), mask.fill(1);
@@ -148,7 +152,8 @@ TEST(SequenceMetrics, AreAsSymmetricAsDeclared) {
     swapped.motion = pair.motion;
     for (const SequenceMetric& metric : sequenceMetricCatalog()) EXPECT_FALSE(metric.symmetric) << metric.id;
     // It judges the image's own frames: with another sequence in its place, the number is another.
-    EXPECT_EQ(measureTemporal(pair, false).value, measureTemporal(swapped, false).value) << "backwards it is the same flicker";
+    EXPECT_EQ(measureTemporal(pair, false).value, measureTemporal(swapped, false).value)
+        << "backwards it is the same flicker";
     EXPECT_NE(measureTemporal(pair, false).value, measureTemporal({moving.now, moving.now}, false).value);
     EXPECT_NE(measureReprojectedTemporal(pair, false).value, measureReprojectedTemporal(swapped, false).value);
     LagMeter rising(moving.before, moving.now), falling(moving.now, moving.before);
@@ -182,7 +187,8 @@ TEST(SequenceMetrics, BrokenPixelsOfEitherFrameCountForNothing) {
     EXPECT_EQ(followed.details[0].second, 2);
     moving.motion.at(0, 12, 12) = nan;
     without.mask.at(0, 12, 12) = 0;
-    EXPECT_EQ(measureReprojectedTemporal(moving.pair(), false).value, measureReprojectedTemporal(without.pair(), false).value);
+    EXPECT_EQ(measureReprojectedTemporal(moving.pair(), false).value,
+              measureReprojectedTemporal(without.pair(), false).value);
 }
 
 TEST(SequenceMetrics, NothingThatCountsIsNoValueAndSaysWhy) {
@@ -190,7 +196,8 @@ TEST(SequenceMetrics, NothingThatCountsIsNoValueAndSaysWhy) {
     moving.motion.fill(1000);
     EXPECT_EQ(measureReprojectedTemporal(moving.pair(), false).reason, "no point was seen in the frame before");
     moving.mask.fill(0);
-    for (const Measurement& seen : {measureTemporal(moving.pair(), true), measureReprojectedTemporal(moving.pair(), true)}) {
+    for (const Measurement& seen :
+         {measureTemporal(moving.pair(), true), measureReprojectedTemporal(moving.pair(), true)}) {
         EXPECT_TRUE(std::isnan(seen.value));
         EXPECT_EQ(seen.reason, "the mask leaves no pixel");
     }
@@ -207,7 +214,8 @@ TEST(SequenceMetrics, OtherSizesAreRefused) {
     const Image small({kExtent.width - 1, kExtent.height}, 3);
     EXPECT_THROW(measureTemporal({moving.now, small}, false), Error);
     TemporalPair pair = moving.pair();
-    for (const Image* TemporalPair::*member : {&TemporalPair::motion, &TemporalPair::depth, &TemporalPair::previousDepth, &TemporalPair::mask}) {
+    for (const Image* TemporalPair::*member :
+         {&TemporalPair::motion, &TemporalPair::depth, &TemporalPair::previousDepth, &TemporalPair::mask}) {
         TemporalPair other = pair;
         other.*member = &small;
         EXPECT_THROW(measureReprojectedTemporal(other, false), Error);

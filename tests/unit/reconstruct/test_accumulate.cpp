@@ -44,7 +44,8 @@ TEST(Accumulate, AlignedSplitsGiveTheSameBits) {
         AccumulateModule module;
         module.resize(kExtent);
         Image image;
-        for (FrameNumber frame = 0; frame < 16 / spp; ++frame) image = harness.image(module, frame, harness.trace(frame));
+        for (FrameNumber frame = 0; frame < 16 / spp; ++frame)
+            image = harness.image(module, frame, harness.trace(frame));
         images.push_back(image);
     }
     EXPECT_EQ(images[0], images[1]);

@@ -21,7 +21,8 @@ TEST(Catalog, IdsAreKebabCaseAndUnique) {
 
 TEST(Catalog, AnInstanceIsItsModule) {
     EXPECT_STREQ(findModule("accumulate@b").id, "accumulate");
-    test::expectError(ErrorKind::Usage, [] { findModule("acumulate", "--module"); }, {"--module", "acumulate", "\"accumulate\""});
+    test::expectError(ErrorKind::Usage, [] { findModule("acumulate", "--module"); },
+                      {"--module", "acumulate", "\"accumulate\""});
 }
 
 TEST(Catalog, EveryParameterHasAKebabCaseIdAndHelp) {

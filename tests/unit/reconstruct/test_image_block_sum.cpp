@@ -39,12 +39,14 @@ float totalInSteps(uint64_t count, uint64_t step) {
 TEST(ImageBlockSum, AnyAlignedSplitGivesTheSameBits) {
     for (const uint64_t count : {8u, 64u, 96u, 1024u}) {
         const float once = totalInSteps(count, count);
-        for (uint64_t step = 1; step < count && count % step == 0; step *= 2) EXPECT_EQ(totalInSteps(count, step), once) << count << '/' << step;
+        for (uint64_t step = 1; step < count && count % step == 0; step *= 2)
+            EXPECT_EQ(totalInSteps(count, step), once) << count << '/' << step;
     }
 }
 
 TEST(ImageBlockSum, OneStepOfAnySizeEqualsSingleSteps) {
-    for (uint64_t count = 1; count <= 70; ++count) EXPECT_EQ(totalInSteps(count, count), totalInSteps(count, 1)) << count;
+    for (uint64_t count = 1; count <= 70; ++count)
+        EXPECT_EQ(totalInSteps(count, count), totalInSteps(count, 1)) << count;
 }
 
 TEST(ImageBlockSum, KeepsOneImageForEachSetBit) {

@@ -31,12 +31,14 @@ Measured measure(const Material& floor, const Light& light, const Vec3& from) {
     const auto posed = tiny.pose();
     Tracer tracer;
     tracer.bind(posed);
-    const FrameSampling sampling = frameOf(lookFrom({0, 1.5f, 4}, {0, 0, 0}, 40), kExtent, 1, plainPaths(2), SignalSet::all());
+    const FrameSampling sampling =
+        frameOf(lookFrom({0, 1.5f, 4}, {0, 0, 0}, 40), kExtent, 1, plainPaths(2), SignalSet::all());
     Measured measured;
     EXPECT_TRUE(tracer.sample(sampling, measured.signals));
     StageTimer timer;
     const TapSet none;
-    const FrameContext context{0, measured.signals, *posed, sampling.camera, sampling.camera, {}, none, tracer, sampling, timer, {}};
+    const FrameContext context{
+        0, measured.signals, *posed, sampling.camera, sampling.camera, {}, none, tracer, sampling, timer, {}};
     EXPECT_TRUE(measureOcclusion(context, measured.image));
     return measured;
 }
@@ -44,7 +46,8 @@ Measured measure(const Material& floor, const Light& light, const Vec3& from) {
 /// The floor under the plate's middle is in full shadow; the floor far from it is lit.
 bool isUnder(const Signals& signals, int x, int y) {
     const Image& p = signals[Signal::Position];
-    return p.at(1, x, y) < 0.01f && std::abs(p.at(0, x, y)) < 0.35f && std::abs(p.at(2, x, y)) < 0.35f && signals.ids(Signal::ObjectId).at(0, x, y) == 1;
+    return p.at(1, x, y) < 0.01f && std::abs(p.at(0, x, y)) < 0.35f && std::abs(p.at(2, x, y)) < 0.35f &&
+           signals.ids(Signal::ObjectId).at(0, x, y) == 1;
 }
 
 TEST(Occlusion, OfASunIsTheBlockersDistanceAndTheSunsAngle) {
@@ -67,7 +70,8 @@ TEST(Occlusion, OfASunIsTheBlockersDistanceAndTheSunsAngle) {
                 if (measured.signals[Signal::Position].at(2, x, y) < -2) lit += measured.image.at(1, x, y) == 0;
                 // A disk of directions: half its radius, along one of its dimensions.
                 const bool onFloor = measured.signals.ids(Signal::ObjectId).at(0, x, y) == 1;
-                ASSERT_NEAR(measured.image.at(2, x, y), onFloor ? 0.5f * radians(4) : measured.image.at(2, x, y), 0.05f * radians(4));
+                ASSERT_NEAR(measured.image.at(2, x, y), onFloor ? 0.5f * radians(4) : measured.image.at(2, x, y),
+                            0.05f * radians(4));
             }
         EXPECT_GT(under, 10);
         EXPECT_GT(lit, 10);

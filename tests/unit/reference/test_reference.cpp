@@ -204,7 +204,8 @@ TEST(Reference, APartThatAnotherProcessWroteMeanwhileIsNotWrittenOver) {
     const auto meanwhile = [&](SampleRange range) {
         ReferenceOptions options;
         options.progress = [&](const ReferenceProgress&) {
-            std::filesystem::copy_file(folder / "theirs", folder / "same", std::filesystem::copy_options::skip_existing);
+            std::filesystem::copy_file(folder / "theirs", folder / "same",
+                                       std::filesystem::copy_options::skip_existing);
         };
         std::filesystem::remove(folder / "same");
         makeReferencePart(tinySpec(), range, folder / "same", "", options);
@@ -234,7 +235,8 @@ TEST(Reference, AnErrorAsGoalStopsAtTheFirstStepThatReachesIt) {
 }
 
 TEST(Reference, TheStandardErrorIsWhatSeedsDifferBy) {
-    // Independent samples: the error of one reference, as it sees itself, against the scatter of references of other seeds.
+    // Independent samples: the error of one reference, as it sees itself, against the scatter of references of other
+    // seeds.
     ReferenceSpec spec = tinySpec();
     spec.path.sampler = SamplerKind::Independent;
     std::vector<Reference> references;
@@ -308,12 +310,19 @@ TEST(Reference, PartsMergeToTheWhole) {
     EXPECT_EQ(merged.standardError, whole.standardError);
     EXPECT_EQ(merged.depth, whole.depth);
 
-    test::expectError(ErrorKind::BadInput, [&] { mergeParts(std::vector{parts[1], parts[0]}); }, {"missing", "96..320"});
+    test::expectError(ErrorKind::BadInput,
+                      [&] {
+                          mergeParts(std::vector{parts[1], parts[0]});
+                      },
+                      {"missing", "96..320"});
     test::expectError(ErrorKind::BadInput, [&] { mergeParts(std::vector{parts[1], parts[1]}); }, {"overlaps"});
     ReferenceSpec other = tinySpec();
     other.path.maxDepth = 2;
     makeReferencePart(other, {48, 96}, folder / "other.lumiref", "note", {});
-    test::expectError(ErrorKind::BadInput, [&] { mergeParts(std::vector{parts[1], folder / "other.lumiref"}); },
+    test::expectError(ErrorKind::BadInput,
+                      [&] {
+                          mergeParts(std::vector{parts[1], folder / "other.lumiref"});
+                      },
                       {"another image", "path.max-depth"});
     test::expectError(ErrorKind::Usage, [&] { makeReferencePart(other, {0, 48}, parts[1], "note", {}); }, {"exists"});
 }
@@ -326,7 +335,9 @@ TEST(Reference, APartGoesOnWhereItWasStopped) {
     options.progress = [&](const ReferenceProgress& progress) {
         if (progress.samples >= 64) stop.request_stop();
     };
-    test::expectError(ErrorKind::Interrupted, [&] { makeReferencePart(tinySpec(), {32, 160}, folder / "a", "", options); });
+    test::expectError(ErrorKind::Interrupted, [&] {
+        makeReferencePart(tinySpec(), {32, 160}, folder / "a", "", options);
+    });
     EXPECT_TRUE(std::filesystem::exists(folder / "a.partial"));
     makeReferencePart(tinySpec(), {32, 160}, folder / "a", "", {});
     makeReferencePart(tinySpec(), {32, 160}, folder / "b", "", {});
@@ -339,7 +350,8 @@ TEST(Reference, WhatPassesTheMemoryLimitIsRefused) {
     setMemoryLimit(residentBytes() + (1 << 20));
     ReferenceSpec spec = tinySpec();
     spec.camera = poseCamera(spec.scene->cameras[0].camera, {2048, 2048});
-    test::expectError(ErrorKind::Resources, [&] { makeReference(spec, {.samples = 4096}, {}); }, {"2048x2048", "limit"});
+    test::expectError(ErrorKind::Resources, [&] { makeReference(spec, {.samples = 4096}, {}); },
+                      {"2048x2048", "limit"});
     setMemoryLimit(limit);
 }
 

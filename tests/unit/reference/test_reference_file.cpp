@@ -1,7 +1,6 @@
 // The file of block sums: what goes in comes out; what is damaged is named.
 #include <gtest/gtest.h>
 
-
 #include "base/files.h"
 #include "reference/reference_file.h"
 #include "support/expect_error.h"
@@ -54,7 +53,8 @@ TEST(ReferenceFile, RoundTrip) {
     SampleRange range;
     EXPECT_EQ(readReferenceHead(folder / "deep/a.lumiref", &range).key, state.key);
     EXPECT_EQ(range, (SampleRange{0, 112}));
-    for (const auto& entry : std::filesystem::directory_iterator(folder / "deep")) EXPECT_EQ(entry.path().extension(), ".lumiref");
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "deep"))
+        EXPECT_EQ(entry.path().extension(), ".lumiref");
 }
 
 TEST(ReferenceFile, EveryChangedByteIsFound) {
@@ -83,7 +83,8 @@ TEST(ReferenceFile, EveryChangedByteIsFound) {
 TEST(ReferenceFile, WhatCannotBeWrittenLeavesNothing) {
     const test::TemporaryFolder folder;
     writeFileAtomically(folder / "file", std::string_view("text"));
-    test::expectError(ErrorKind::Usage, [&] { writeReferenceFile(folder / "file/a.lumiref", someState()); }, {"a.lumiref"});
+    test::expectError(ErrorKind::Usage, [&] { writeReferenceFile(folder / "file/a.lumiref", someState()); },
+                      {"a.lumiref"});
 }
 
 }  // namespace

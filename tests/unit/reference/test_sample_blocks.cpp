@@ -50,7 +50,8 @@ TEST(SampleBlocks, TheMeanIsThatOfAlignedPairwiseSums) {
         for (const size_t i : {size_t(0), size_t(33), mean.size() - 1}) {
             BlockSum<double> expected;
             for (uint64_t k = 0; k < leaves; ++k) expected.add(k, leaf(k).sum.data()[i]);
-            EXPECT_EQ(mean.data()[i], static_cast<float>(expected.total() * (1.0 / static_cast<double>(leaves * kLeafSamples))));
+            EXPECT_EQ(mean.data()[i],
+                      static_cast<float>(expected.total() * (1.0 / static_cast<double>(leaves * kLeafSamples))));
         }
     }
 }
@@ -86,7 +87,8 @@ TEST(SampleBlocks, HalvesHoldEverySampleOnce) {
     double expected = 0;
     for (const uint64_t k : {0, 1, 2, 3, 8, 9}) expected += leaf(k).sum.data()[11];
     EXPECT_NEAR(first.data()[11], expected / (6 * kLeafSamples), 1e-6);
-    for (size_t i = 0; i < mean.size(); ++i) EXPECT_NEAR((first.data()[i] + second.data()[i]) / 2, mean.data()[i], 1e-6);
+    for (size_t i = 0; i < mean.size(); ++i)
+        EXPECT_NEAR((first.data()[i] + second.data()[i]) / 2, mean.data()[i], 1e-6);
     EXPECT_TRUE(blocksOf(0, 1).half(false).empty());
 }
 
@@ -103,7 +105,8 @@ TEST(SampleBlocks, TheStandardErrorIsThatOfEqualParts) {
             for (const double sum : sums) squares += (sum - mean) * (sum - mean);
             const double ofParts = std::sqrt(squares / static_cast<double>(parts - 1) / static_cast<double>(parts)) /
                                    static_cast<double>(leavesOfPart * kLeafSamples);
-            const double all = ofParts * std::sqrt(static_cast<double>(parts * leavesOfPart) / static_cast<double>(leaves));
+            const double all =
+                ofParts * std::sqrt(static_cast<double>(parts * leavesOfPart) / static_cast<double>(leaves));
             EXPECT_NEAR(error.data()[pixel], all, 1e-5 * all) << leaves;
         }
     }
@@ -114,7 +117,8 @@ TEST(SampleBlocks, TheStandardErrorOfIndependentLeavesIsTheirOwn) {
     // Sums of exponentials with mean 1 a leaf of 16 each: luminance has variance (0.2126^2 + 0.7152^2 + 0.0722^2).
     const Image error = blocksOf(0, 512).standardError(512 * kLeafSamples);
     double squares = 0;
-    for (size_t i = 0; i < error.size(); ++i) squares += error.data()[i] * error.data()[i] / static_cast<double>(error.size());
+    for (size_t i = 0; i < error.size(); ++i)
+        squares += error.data()[i] * error.data()[i] / static_cast<double>(error.size());
     const double expected = (0.2126 * 0.2126 + 0.7152 * 0.7152 + 0.0722 * 0.0722) / 512;
     EXPECT_NEAR(squares / expected, 1, 0.3);  // 35 pixels with 15 degrees of freedom: 0.06 standard deviation
     const Image mean = blocksOf(0, 512).mean({}, 0);

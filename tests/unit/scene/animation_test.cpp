@@ -118,8 +118,7 @@ TEST(Animation, CatmullRomRotationPassesThroughItsKeys) {
 }
 
 TEST(Animation, OneKeyIsConstant) {
-    for (const Interpolation interpolation :
-         {Interpolation::Step, Interpolation::Linear, Interpolation::CatmullRom}) {
+    for (const Interpolation interpolation : {Interpolation::Step, Interpolation::Linear, Interpolation::CatmullRom}) {
         const AnimationChannel channel = scalar(interpolation, {2}, {7});
         for (const float t : {-1.0f, 2.0f, 5.0f}) EXPECT_EQ(at(channel, t), 7);
     }

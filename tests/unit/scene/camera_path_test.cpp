@@ -12,7 +12,9 @@ namespace {
 CameraPath somePath() {
     CameraPath path;
     path.aperture = 0.02f;
-    path.keys = {{0, {0, 1, 5}, {0, 1, 0}, 45, 5}, {0.5f, {1, 2, 4}, {0.5f, 0, -1}, 40, 3.5f}, {2, {-3, 0.5f, 2}, {0, 0, 0}, 60, 2}};
+    path.keys = {{0, {0, 1, 5}, {0, 1, 0}, 45, 5},
+                 {0.5f, {1, 2, 4}, {0.5f, 0, -1}, 40, 3.5f},
+                 {2, {-3, 0.5f, 2}, {0, 0, 0}, 60, 2}};
     return path;
 }
 
@@ -43,7 +45,8 @@ TEST(CameraPath, BothFormatsComeBack) {
 TEST(CameraPath, InstantNgpLooksAlongTheThirdColumn) {
     const test::TemporaryFolder folder;
     // Its default camera: right +X, down -Y, forward -Z is half a turn about X. Keys without times share the duration.
-    writeFileAtomically(folder / "a.json", std::string_view(R"({"loop":false,"time":0.5,"duration_seconds":6,"spline_order":3,
+    writeFileAtomically(folder / "a.json",
+                        std::string_view(R"({"loop":false,"time":0.5,"duration_seconds":6,"spline_order":3,
         "path":[{"R":[1,0,0,0],"T":[0.5,0.25,2],"slice":0.5,"scale":1.5,"fov":50.625,"aperture_size":0.0},
                 {"R":[1,0,0,0],"T":[0.5,0.25,1],"slice":0,"scale":1.5,"fov":50.625,"aperture_size":0.1},
                 {"R":[0.70710678,0,0.70710678,0],"T":[0,0,0],"slice":0,"scale":2,"fov":30,"aperture_size":0.1}]})"));
@@ -79,8 +82,12 @@ TEST(CameraPath, OfACameraThatStandsOrMoves) {
 
 TEST(CameraPath, BrokenFilesAreNamedWithTheirKey) {
     const test::TemporaryFolder folder;
-    const struct { const char *text, *part; } cases[] = {
-        {"[]", "no camera path"}, {"{", "no camera path"}, {R"({"path": 3})", "no camera path"},
+    const struct {
+        const char *text, *part;
+    } cases[] = {
+        {"[]", "no camera path"},
+        {"{", "no camera path"},
+        {R"({"path": 3})", "no camera path"},
         {R"({"path": []})", "no keys"},
         {R"({"path": [{"R": [0,0,0,0], "T": [0,0,0]}]})", "rotation"},
         {R"({"path": [{"R": [1,0,0], "T": [0,0,0]}]})", "\"R\""},
@@ -90,10 +97,13 @@ TEST(CameraPath, BrokenFilesAreNamedWithTheirKey) {
         {R"({"format": "lumiscope-camera-path", "version": 1, "keys": 1})", "list"},
         {R"({"format": "lumiscope-camera-path", "version": 1, "kees": []})", "\"keys\""},
         {R"({"format": "lumiscope-camera-path", "version": 1, "interpolation": "wild", "keys": []})", "catmull-rom"},
-        {R"({"format": "lumiscope-camera-path", "version": 1, "keys": [{"time": 0, "eye": [0,0,1], "look-at": [0,0,1]}]})", "key 0"},
+        {R"({"format": "lumiscope-camera-path", "version": 1, "keys": [{"time": 0, "eye": [0,0,1], "look-at": [0,0,1]}]})",
+         "key 0"},
         {R"({"format": "lumiscope-camera-path", "version": 1, "keys": [{"time": 1, "eye": [0,0,1], "look-at": [0,0,0]},
-                                                                      {"time": 1, "eye": [0,0,1], "look-at": [0,0,0]}]})", "ascend"},
-        {R"({"format": "lumiscope-camera-path", "version": 1, "keys": [{"time": 0, "eye": [0,0,1], "look-at": [0,0,0], "fov-y-deg": 900}]})", "170"}};
+                                                                      {"time": 1, "eye": [0,0,1], "look-at": [0,0,0]}]})",
+         "ascend"},
+        {R"({"format": "lumiscope-camera-path", "version": 1, "keys": [{"time": 0, "eye": [0,0,1], "look-at": [0,0,0], "fov-y-deg": 900}]})",
+         "170"}};
     for (const auto& broken : cases) {
         writeFileAtomically(folder / "p.json", std::string_view(broken.text));
         test::expectError(ErrorKind::BadInput, [&] { readCameraPath(folder / "p.json"); }, {"p.json", broken.part});

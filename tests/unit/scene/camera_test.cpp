@@ -20,8 +20,8 @@ TEST(Camera, ProjectsToContinuousPixels) {
     camera.fovYDeg = 90;
     const CameraPose pose = poseCamera(camera, {200, 100});
     expectNear(pose.project({0, 0, 0}), {100, 50, 2});
-    expectNear(pose.project({2, 0, 0}), {150, 50, 2});   // 45 degrees is half the height away
-    expectNear(pose.project({0, 2, 0}), {100, 0, 2});    // the top edge
+    expectNear(pose.project({2, 0, 0}), {150, 50, 2});  // 45 degrees is half the height away
+    expectNear(pose.project({0, 2, 0}), {100, 0, 2});   // the top edge
     EXPECT_LT(pose.project({0, 0, 3}).z, 0);
     EXPECT_NEAR(pose.pixelSize() * 100, 2, 1e-6f);
     expectNear(pose.forward(), {0, 0, -1});
@@ -52,7 +52,8 @@ TEST(Camera, InverseIsExactEnough) {
 TEST(Camera, KeyedCamerasPassThroughTheirKeys) {
     Scene scene;
     SceneCamera camera;
-    camera.keys = {{0, {0, 0, 0}, {0, 0, -1}, 40, 1}, {1, {1, 0, 0}, {1, 0, -1}, 50, 2}, {2, {2, 3, 0}, {2, 3, -1}, 60, 3}};
+    camera.keys = {
+        {0, {0, 0, 0}, {0, 0, -1}, 40, 1}, {1, {1, 0, 0}, {1, 0, -1}, 50, 2}, {2, {2, 3, 0}, {2, 3, -1}, 60, 3}};
     scene.cameras = {camera};
     expectNear(cameraAt(scene, 0, 0).eye, {0, 0, 0});
     expectNear(cameraAt(scene, 0, 1).eye, {1, 0, 0});
@@ -101,8 +102,8 @@ TEST(Parameters, CameraLightAndMaterialCanBeSetByName) {
     EXPECT_EQ(material.attenuationDistance, 0.5f);
     setParameter(describeMaterial, "attenuation-distance", 1e6f);
     EXPECT_EQ(material.attenuationDistance, kInfinity);
-    for (const char* id : {"base-color", "metallic", "roughness", "emission", "alpha", "ior", "specular", "specular-color",
-                           "transmission", "thickness", "attenuation-color", "normal-scale"})
+    for (const char* id : {"base-color", "metallic", "roughness", "emission", "alpha", "ior", "specular",
+                           "specular-color", "transmission", "thickness", "attenuation-color", "normal-scale"})
         EXPECT_NO_THROW(getParameter(describeMaterial, id)) << id;
 }
 

@@ -149,7 +149,8 @@ TEST(DefaultCamera, StopsWithTheLoad) {
     std::stop_source source;
     source.request_stop();
     MessageLog log;
-    expectError(ErrorKind::Interrupted, [&] { addDefaults(scene, log, true, source.get_token()); }, {"made.obj", "stopped"});
+    expectError(ErrorKind::Interrupted, [&] { addDefaults(scene, log, true, source.get_token()); },
+                {"made.obj", "stopped"});
     EXPECT_TRUE(scene.cameras.empty());
 }
 

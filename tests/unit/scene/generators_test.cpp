@@ -26,10 +26,8 @@ size_t openEdges(const Mesh& mesh, const std::set<uint32_t>& slots = {}) {
         for (int i = 0; i < 3; ++i) {
             const Point a = pointOf(mesh.positions[mesh.triangles[t][i]]);
             const Point b = pointOf(mesh.positions[mesh.triangles[t][(i + 1) % 3]]);
-            if (a < b)
-                ++edges[{a, b}].first;
-            else
-                ++edges[{b, a}].second;
+            if (a < b) ++edges[{a, b}].first;
+            else ++edges[{b, a}].second;
         }
     }
     size_t open = 0;
@@ -222,21 +220,12 @@ TEST(Textures, ColoursRepeatWithoutASeamAndNormalsPointUp) {
 }
 
 TEST(BuiltInScenes, LoadWithoutAWarningAndWithinTheirSize) {
-    const std::map<std::string, std::pair<int64_t, int64_t>> sizes = {{"cornell", {10, 100}},
-                                                                      {"room", {100000, 450000}},
-                                                                      {"atrium", {150000, 400000}},
-                                                                      {"still-life", {100000, 450000}},
-                                                                      {"parade", {100000, 450000}},
-                                                                      {"atrium-glossy", {150000, 400000}},
-                                                                      {"red-room", {50000, 450000}},
-                                                                      {"classroom", {50000, 450000}},
-                                                                      {"courtyard", {1000000, 2500000}},
-                                                                      {"pillar", {10000, 100000}},
-                                                                      {"grids", {1000, 100000}},
-                                                                      {"hairball", {500000, 1500000}},
-                                                                      {"text-plane", {100, 10000}},
-                                                                      {"ogre", {50000, 300000}},
-                                                                      {"bump-plane", {2, 100}}};
+    const std::map<std::string, std::pair<int64_t, int64_t>> sizes = {
+        {"cornell", {10, 100}},           {"room", {100000, 450000}},     {"atrium", {150000, 400000}},
+        {"still-life", {100000, 450000}}, {"parade", {100000, 450000}},   {"atrium-glossy", {150000, 400000}},
+        {"red-room", {50000, 450000}},    {"classroom", {50000, 450000}}, {"courtyard", {1000000, 2500000}},
+        {"pillar", {10000, 100000}},      {"grids", {1000, 100000}},      {"hairball", {500000, 1500000}},
+        {"text-plane", {100, 10000}},     {"ogre", {50000, 300000}},      {"bump-plane", {2, 100}}};
     for (const auto& [name, range] : sizes) {
         SCOPED_TRACE(name);
         MessageLog log;
@@ -249,7 +238,8 @@ TEST(BuiltInScenes, LoadWithoutAWarningAndWithinTheirSize) {
         EXPECT_EQ(scene->cameras.front().camera.name, "main");
         EXPECT_EQ(scene->render.module, "accumulate");
         EXPECT_EQ(scene->render.size, (Extent2{1280, 720}));
-        EXPECT_EQ(scene->isAnimated(), name != "cornell" && name != "still-life" && name != "pillar" && name != "grids");
+        EXPECT_EQ(scene->isAnimated(),
+                  name != "cornell" && name != "still-life" && name != "pillar" && name != "grids");
     }
 }
 
@@ -260,7 +250,8 @@ TEST(Generators, TheOgreIsClosedAndBreathes) {
     EXPECT_LE(openEdges(mesh), 4u);
     glm::dvec3 sum(0);
     for (const UVec3& t : mesh.triangles)
-        sum += glm::dvec3(glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]));
+        sum += glm::dvec3(
+            glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]));
     EXPECT_LT(glm::length(sum), 1e-4);
     EXPECT_GT(volumeOf(mesh), 0.2);
     ASSERT_EQ(mesh.morphTargets.size(), 1u);
@@ -271,7 +262,8 @@ TEST(Generators, TheOgreIsClosedAndBreathes) {
     EXPECT_EQ(mesh.skin.first.size(), mesh.positions.size() + 1);
     size_t turned = 0;
     for (const UVec3& t : mesh.triangles) {
-        const Vec3 face = glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
+        const Vec3 face =
+            glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
         turned += glm::dot(face, mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z]) < 0;
     }
     EXPECT_LE(turned * 500, mesh.triangles.size()) << "normals and faces agree";

@@ -76,9 +76,8 @@ TEST(GltfAccessor, NoSparseElementReplacesNone) {
     file.triangle();
     const std::vector<float> values{5, 6, 7};
     const int view = file.view(values.data(), 12);
-    file.json["accessors"][0]["sparse"] = {{"count", 0},
-                                           {"indices", {{"bufferView", view}, {"componentType", 5121}}},
-                                           {"values", {{"bufferView", view}}}};
+    file.json["accessors"][0]["sparse"] = {
+        {"count", 0}, {"indices", {{"bufferView", view}, {"componentType", 5121}}}, {"values", {{"bufferView", view}}}};
     EXPECT_EQ(meshOf(file.load()).positions[1], Vec3(1, 0, 0));
 }
 
@@ -116,7 +115,8 @@ TEST(GltfAccessor, IndicesOfEveryWidth) {
 }
 
 TEST(GltfAccessor, RangesAreChecked) {
-    const auto refused = [](const std::function<void(GltfBuilder&)>& breakIt, const std::initializer_list<std::string>& parts) {
+    const auto refused = [](const std::function<void(GltfBuilder&)>& breakIt,
+                            const std::initializer_list<std::string>& parts) {
         GltfBuilder file;
         file.triangle();
         breakIt(file);
@@ -133,10 +133,15 @@ TEST(GltfAccessor, RangesAreChecked) {
     refused([](auto& f) { f.json["bufferViews"][0]["buffer"] = 3; }, {"/bufferViews/0/buffer"});
     refused([](auto& f) { f.json["bufferViews"][0]["byteLength"] = 100000; }, {"/bufferViews/0", "past the end"});
     refused([](auto& f) { f.json["bufferViews"][0]["byteOffset"] = 18446744073709551612ull; }, {"/bufferViews/0"});
-    refused([](auto& f) { f.primitive()["attributes"]["POSITION"] = 99; }, {"/meshes/0/primitives/0/attributes/POSITION", "99"});
+    refused([](auto& f) { f.primitive()["attributes"]["POSITION"] = 99; },
+            {"/meshes/0/primitives/0/attributes/POSITION", "99"});
     refused([](auto& f) { f.primitive()["indices"] = 0; }, {"/indices"});
     refused([](auto& f) { f.primitive()["indices"] = f.indices({0, 1, 3}); }, {"/indices", "below 3", "found 3"});
-    refused([](auto& f) { f.primitive()["attributes"]["NORMAL"] = f.floats({0, 0, 1}, "VEC3", 3); }, {"NORMAL", "count"});
+    refused(
+        [](auto& f) {
+            f.primitive()["attributes"]["NORMAL"] = f.floats({0, 0, 1}, "VEC3", 3);
+        },
+        {"NORMAL", "count"});
     refused([](auto& f) { f.primitive()["mode"] = 9; }, {"/mode", "9"});
     refused([](auto& f) { f.primitive()["material"] = 2; }, {"/material"});
     refused(
@@ -166,7 +171,8 @@ TEST(GltfAccessor, SparseRangesAreChecked) {
     refused([](auto& s) { s["indices"]["byteOffset"] = -4; }, "negative offset");
     refused([](auto& s) { s["indices"]["bufferView"] = 66; }, "66");
     refused([](auto& s) { s["values"]["byteOffset"] = 4; }, "past the end");
-    refused([](auto& s) { s["indices"]["bufferView"] = 0, s["indices"]["byteOffset"] = 14; }, "elements of the accessor");
+    refused([](auto& s) { s["indices"]["bufferView"] = 0, s["indices"]["byteOffset"] = 14; },
+            "elements of the accessor");
 }
 
 }  // namespace

@@ -30,15 +30,23 @@ protected:
 
 TEST_F(GltfAssets, TriangleCountsAreThoseOfTheIndex) {
     const std::pair<const char*, int64_t> expected[] = {
-        {"AlphaBlendModeTest/AlphaBlendModeTest.glb", 61},   {"BitterliCoffee/coffee.gltf", 235176},
-        {"Box With Spaces/Box With Spaces.gltf", 12},        {"BoxInterleaved/BoxInterleaved.glb", 12},
-        {"CesiumMan/CesiumMan.glb", 4672},                   {"CornellBoxMitsuba/cbox.glb", 38},
-        {"DamagedHelmet/DamagedHelmet.glb", 15452},          {"Duck/glTF-Embedded/Duck.gltf", 4212},
-        {"Duck/glTF-Quantized/Duck.gltf", 4212},             {"LightsPunctualLamp/LightsPunctualLamp.gltf", 6000},
-        {"MeshPrimitiveModes/MeshPrimitiveModes.gltf", 16},  {"MorphPrimitivesTest/MorphPrimitivesTest.glb", 32},
+        {"AlphaBlendModeTest/AlphaBlendModeTest.glb", 61},
+        {"BitterliCoffee/coffee.gltf", 235176},
+        {"Box With Spaces/Box With Spaces.gltf", 12},
+        {"BoxInterleaved/BoxInterleaved.glb", 12},
+        {"CesiumMan/CesiumMan.glb", 4672},
+        {"CornellBoxMitsuba/cbox.glb", 38},
+        {"DamagedHelmet/DamagedHelmet.glb", 15452},
+        {"Duck/glTF-Embedded/Duck.gltf", 4212},
+        {"Duck/glTF-Quantized/Duck.gltf", 4212},
+        {"LightsPunctualLamp/LightsPunctualLamp.gltf", 6000},
+        {"MeshPrimitiveModes/MeshPrimitiveModes.gltf", 16},
+        {"MorphPrimitivesTest/MorphPrimitivesTest.glb", 32},
         {"MetalRoughSpheresNoTextures/MetalRoughSpheresNoTextures.glb", 1040409},
-        {"NegativeScaleTest/NegativeScaleTest.glb", 7724},   {"SimpleSparseAccessor/glTF/SimpleSparseAccessor.gltf", 12},
-        {"TransmissionTest/TransmissionTest.glb", 128775},   {"VeachMIS/veach_mis.glb", 3854}};
+        {"NegativeScaleTest/NegativeScaleTest.glb", 7724},
+        {"SimpleSparseAccessor/glTF/SimpleSparseAccessor.gltf", 12},
+        {"TransmissionTest/TransmissionTest.glb", 128775},
+        {"VeachMIS/veach_mis.glb", 3854}};
     for (const auto& [file, triangles] : expected) EXPECT_EQ(load(file).triangleCount(), triangles) << file;
     // 125 instances of a cube; the index counts the mesh once.
     EXPECT_EQ(load("SimpleInstancing/SimpleInstancing.glb").triangleCount(), 125 * 12);
@@ -67,7 +75,8 @@ TEST_F(GltfAssets, AnimationStaysInTheDefaultPicture) {
             const auto posed = poseScene(scene, {scene->duration() * static_cast<float>(i) / 40});
             for (size_t k = 0; k < posed->instances.size(); ++k) {
                 const PosedInstance& pose = posed->instances[k];
-                for (const Vec3& p : pose.deformed ? pose.deformed->positions : posed->mesh(static_cast<uint32_t>(k)).positions) {
+                for (const Vec3& p :
+                     pose.deformed ? pose.deformed->positions : posed->mesh(static_cast<uint32_t>(k)).positions) {
                     const Vec3 pixel = camera.project(transformPoint(pose.worldFromObject, p));
                     widest = std::max({widest, std::abs(pixel.x - 50), std::abs(pixel.y - 50)});
                 }

@@ -10,9 +10,9 @@
 namespace lumi {
 namespace {
 
-using test::DracoFile;
 using test::addDraco;
 using test::addMeshopt;
+using test::DracoFile;
 using test::encodeDraco;
 using test::encodeVertices;
 using test::GltfBuilder;

@@ -14,7 +14,8 @@ void expectFileRefused(const std::string& name, const std::vector<uint8_t>& byte
     TemporaryFolder folder;
     writeFileAtomically(folder / name, bytes);
     MessageLog log;
-    expectError(ErrorKind::BadInput, [&] { loadGltf(folder / name, log); }, parts);
+    expectError(
+        ErrorKind::BadInput, [&] { loadGltf(folder / name, log); }, parts);
 }
 
 std::vector<uint8_t> bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
@@ -49,12 +50,13 @@ TEST(GltfErrors, NotAGlb) {
 }
 
 TEST(GltfErrors, JsonFaultsHaveLineAndColumn) {
-    expectFileRefused("bad.gltf", bytesOf("{\n  \"asset\": {\"version\": \"2.0\"},\n  \"nodes\": [}\n}"), {"bad.gltf:3:13"});
+    expectFileRefused("bad.gltf", bytesOf("{\n  \"asset\": {\"version\": \"2.0\"},\n  \"nodes\": [}\n}"),
+                      {"bad.gltf:3:13"});
 }
 
 TEST(GltfErrors, DeepJsonIsRefusedBeforeItIsParsed) {
-    const std::string deep = "{\"asset\":{\"version\":\"2.0\"},\"extras\":" + std::string(200000, '[') +
-                             std::string(200000, ']') + "}";
+    const std::string deep =
+        "{\"asset\":{\"version\":\"2.0\"},\"extras\":" + std::string(200000, '[') + std::string(200000, ']') + "}";
     expectFileRefused("deep.gltf", bytesOf(deep), {"deep.gltf", "nested too deeply"});
 }
 
@@ -76,8 +78,10 @@ TEST(GltfErrors, BuffersThatAreNoFilesSayWhatTheyAre) {
     TemporaryFolder folder;
     std::filesystem::create_directory(folder / "all");
     std::filesystem::create_symlink("/dev/zero", folder / "zero");
-    for (const auto& [name, what] : {std::pair("all", "\"all\" is a directory"), {"zero", "\"zero\" is not a regular file"}}) {
-        writeFileAtomically(folder / "a.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":4,"uri":")" + std::string(name) + "\"}]}");
+    for (const auto& [name, what] :
+         {std::pair("all", "\"all\" is a directory"), {"zero", "\"zero\" is not a regular file"}}) {
+        writeFileAtomically(folder / "a.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":4,"uri":")" +
+                                                   std::string(name) + "\"}]}");
         MessageLog log;
         expectError(ErrorKind::BadInput, [&] { loadGltf(folder / "a.gltf", log); }, {"a.gltf", what});
     }
@@ -89,7 +93,8 @@ TEST(GltfErrors, NamesThatLeadOutOfTheFolder) {
         expectFileRefused("a.gltf",
                           bytesOf(R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":4,"uri":")" + uri + "\"}]}"),
                           {"a.gltf", "leads out"});
-    expectFileRefused("a.gltf", bytesOf(R"({"asset":{"version":"2.0"},"images":[{"uri":"../secret.png"}]})"), {"leads out"});
+    expectFileRefused("a.gltf", bytesOf(R"({"asset":{"version":"2.0"},"images":[{"uri":"../secret.png"}]})"),
+                      {"leads out"});
 }
 
 TEST(GltfErrors, CyclesAndSharedChildren) {
@@ -134,10 +139,15 @@ TEST(GltfErrors, BadIndicesInTheTree) {
     expectRefused([](auto& f) { f.json["nodes"][0]["camera"] = 0; }, {"/nodes/0/camera", "no cameras"});
     expectRefused([](auto& f) { f.json["scene"] = 5; }, {"/scene"});
     expectRefused([](auto& f) { f.json["scenes"][0]["nodes"] = {0, 7}; }, {"/scenes/0/nodes/1", "7"});
-    expectRefused([](auto& f) { f.json["nodes"][0]["translation"] = {1, 2}; }, {"/nodes/0/translation", "wrong length"});
+    expectRefused(
+        [](auto& f) {
+            f.json["nodes"][0]["translation"] = {1, 2};
+        },
+        {"/nodes/0/translation", "wrong length"});
     expectRefused([](auto& f) { f.json["nodes"][0]["scale"] = {1, 1e300, 1}; }, {"/nodes/0/scale", "finite"});
     expectRefused([](auto& f) { f.json["nodes"][0]["skin"] = 1; }, {"/nodes/0/skin"});
-    expectRefused([](auto& f) { f.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 4; }, {"/nodes/0", "light"});
+    expectRefused([](auto& f) { f.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 4; },
+                  {"/nodes/0", "light"});
     expectRefused(
         [](auto& f) {
             f.json["materials"] = {{{"normalTexture", {{"index", 3}}}}};
@@ -278,15 +288,15 @@ TEST(GltfErrors, WordsThatTheSpecificationDoesNotKnow) {
     expectRefused(
         [](auto& f) {
             const int times = f.floats({0, 1}, "SCALAR", 1), values = f.floats({1, 1, 1, 2, 2, 2}, "VEC3", 3);
-            f.json["animations"] = {
-                {{"samplers", {{{"input", times}, {"output", values}, {"interpolation", "BOGUS"}}}},
-                 {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}}}}};
+            f.json["animations"] = {{{"samplers", {{{"input", times}, {"output", values}, {"interpolation", "BOGUS"}}}},
+                                     {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}}}}};
         },
         {"/animations/0/samplers/0/interpolation", "BOGUS"});
 }
 
 TEST(GltfErrors, ElementsThatOverlapOrCountInFloats) {
-    expectRefused([](auto& f) { f.json["bufferViews"][0]["byteStride"] = 4; }, {"/bufferViews/0/byteStride", "found 4"});
+    expectRefused([](auto& f) { f.json["bufferViews"][0]["byteStride"] = 4; },
+                  {"/bufferViews/0/byteStride", "found 4"});
     expectRefused(
         [](auto& f) {
             const float zero = 0, value[3] = {1, 2, 3};
@@ -301,7 +311,8 @@ TEST(GltfErrors, ElementsThatOverlapOrCountInFloats) {
 TEST(GltfErrors, WeightsForTargetsThatAreNotThere) {
     expectRefused(
         [](auto& f) {
-            const int times = f.floats({0, 1}, "SCALAR", 1), weights = f.floats(std::vector<float>(200, 0), "SCALAR", 1);
+            const int times = f.floats({0, 1}, "SCALAR", 1),
+                      weights = f.floats(std::vector<float>(200, 0), "SCALAR", 1);
             f.primitive()["targets"] = {{{"POSITION", f.primitive()["attributes"]["POSITION"]}}};
             f.json["animations"] = {{{"samplers", {{{"input", times}, {"output", weights}}}},
                                      {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
@@ -341,7 +352,6 @@ TEST(GltfErrors, StoppedLoadsAreInterrupted) {
     MessageLog log;
     expectError(ErrorKind::Interrupted, [&] { file.load(log, options); });
 }
-
 
 }  // namespace
 }  // namespace lumi

@@ -16,12 +16,14 @@ void expectNear(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
 
 /// A 1x1 red PNG.
 const char* const kRedPng =
-    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5ErkJggg==";
+    "data:image/"
+    "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5ErkJggg==";
 
 TEST(GltfFeatures, InstancesShareTheirMesh) {
     GltfBuilder file;
     file.triangle();
-    file.json["nodes"] = {{{"mesh", 0}, {"name", "a"}, {"children", {1}}}, {{"mesh", 0}, {"name", "b"}, {"scale", {2, 2, 2}}}};
+    file.json["nodes"] = {{{"mesh", 0}, {"name", "a"}, {"children", {1}}},
+                          {{"mesh", 0}, {"name", "b"}, {"scale", {2, 2, 2}}}};
     const Scene scene = file.load();
     ASSERT_EQ(scene.instances.size(), 2u);
     EXPECT_EQ(scene.instances[0].mesh, scene.instances[1].mesh);
@@ -171,7 +173,8 @@ TEST(GltfFeatures, PunctualLightsOneToOne) {
         {"type": "directional", "intensity": 3}])");
     nlohmann::json nodes = {{{"children", {1, 2, 3}}}};
     for (const int light : {0, 1, 2})
-        nodes.push_back({{"translation", {0, light, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
+        nodes.push_back(
+            {{"translation", {0, light, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
     file.json["nodes"] = nodes;
     const Scene scene = file.load();
     ASSERT_EQ(scene.lights.size(), 3u);
@@ -193,7 +196,8 @@ TEST(GltfFeatures, Cameras) {
     file.json["cameras"] = nlohmann::json::parse(R"([
         {"type": "perspective", "name": "main", "perspective": {"yfov": 0.7, "znear": 0.1, "aspectRatio": 2}},
         {"type": "orthographic", "orthographic": {"xmag": 3, "ymag": 2, "znear": 0, "zfar": 10}}])");
-    file.json["nodes"] = {{{"children", {1, 2}}, {"mesh", 0}}, {{"camera", 1}, {"translation", {0, 0, 3}}}, {{"camera", 0}}};
+    file.json["nodes"] = {
+        {{"children", {1, 2}}, {"mesh", 0}}, {{"camera", 1}, {"translation", {0, 0, 3}}}, {{"camera", 0}}};
     const Scene scene = file.load();
     ASSERT_EQ(scene.cameras.size(), 2u);
     EXPECT_EQ(scene.cameras[0].camera.projection, Projection::Orthographic);
@@ -211,7 +215,8 @@ TEST(GltfFeatures, MatricesBecomeTransformsWhereTheyCan) {
     const Scene turned = file.load();
     EXPECT_FALSE(turned.nodes[0].hasMatrix);
     expectNear(turned.nodes[0].local.scale, Vec3(2));
-    expectNear(transformPoint(poseScene(std::make_shared<Scene>(turned), {})->instances[0].worldFromObject, {1, 0, 0}), {5, 8, 7});
+    expectNear(transformPoint(poseScene(std::make_shared<Scene>(turned), {})->instances[0].worldFromObject, {1, 0, 0}),
+               {5, 8, 7});
     file.json["nodes"][0]["matrix"] = {1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     EXPECT_TRUE(file.load().nodes[0].hasMatrix) << "shear";
     file.json["nodes"][0]["matrix"] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -267,7 +272,9 @@ TEST(GltfFeatures, ChoicesAreReadWithoutTheRest) {
     EXPECT_EQ(choices.scenes, (std::vector<std::string>{"day \u00e4", ""}));
     EXPECT_EQ(choices.defaultScene, 1);
     EXPECT_EQ(choices.variants, (std::vector<std::string>{"red", "green"}));
-    writeFileAtomically(folder / "b.gltf", std::string_view(R"({"scenes": 7, "scene": "a", "extensions": {"KHR_materials_variants": []}})"));
+    writeFileAtomically(
+        folder / "b.gltf",
+        std::string_view(R"({"scenes": 7, "scene": "a", "extensions": {"KHR_materials_variants": []}})"));
     EXPECT_TRUE(gltf::readChoices(folder / "b.gltf").scenes.empty());
     writeFileAtomically(folder / "c.gltf", std::string_view("{\"scenes\": [\n{]}"));
     expectError(ErrorKind::BadInput, [&] { gltf::readChoices(folder / "c.gltf"); }, {"c.gltf:2:2", "not valid JSON"});
@@ -279,7 +286,8 @@ TEST(GltfFeatures, GpuInstancing) {
     const int t = file.floats({1, 0, 0, 0, 5, 0}, "VEC3", 3);
     const int r = file.accessor<int8_t>({0, 0, 0, 127, 0, 0, 127, 0}, "VEC4", 4, 5120);
     file.json["accessors"][static_cast<size_t>(r)]["normalized"] = true;
-    file.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", t}, {"ROTATION", r}};
+    file.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", t},
+                                                                                    {"ROTATION", r}};
     file.json["nodes"][0]["translation"] = {0, 0, 3};
     const auto scene = std::make_shared<Scene>(file.load());
     ASSERT_EQ(scene->instances.size(), 2u);
@@ -296,8 +304,10 @@ TEST(GltfFeatures, FiveInfluencesAndJointsOutsideTheScene) {
     const int j1 = file.accessor<uint8_t>({4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC4", 4, 5121);
     const int w1 = file.floats({1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC4", 4);
     nlohmann::json& attributes = file.primitive()["attributes"];
-    attributes["JOINTS_0"] = j0, attributes["WEIGHTS_0"] = w0, attributes["JOINTS_1"] = j1, attributes["WEIGHTS_1"] = w1;
-    file.json["nodes"] = {{{"mesh", 0}, {"skin", 0}}, {{"children", {2, 3, 4, 5, 6}}}, {}, {}, {}, {}, {{"translation", {0, 0, 5}}}};
+    attributes["JOINTS_0"] = j0, attributes["WEIGHTS_0"] = w0, attributes["JOINTS_1"] = j1,
+    attributes["WEIGHTS_1"] = w1;
+    file.json["nodes"] = {{{"mesh", 0}, {"skin", 0}},  {{"children", {2, 3, 4, 5, 6}}}, {}, {}, {}, {},
+                          {{"translation", {0, 0, 5}}}};
     for (const size_t i : {2u, 3u, 4u, 5u}) file.json["nodes"][i] = nlohmann::json::object();
     file.json["skins"] = {{{"joints", {2, 3, 4, 5, 6}}}};
     const auto scene = std::make_shared<Scene>(file.load());

@@ -21,7 +21,8 @@ TEST(GltfLayers, FactorsAreRead) {
         "KHR_materials_sheen": {"sheenColorFactor": [1, 0.5, 0.25], "sheenRoughnessFactor": 0.75},
         "KHR_materials_anisotropy": {"anisotropyStrength": 0.6, "anisotropyRotation": 1.5},
         "KHR_materials_iridescence": {"iridescenceFactor": 0.8, "iridescenceIor": 1.7,
-          "iridescenceThicknessMinimum": 200, "iridescenceThicknessMaximum": 500}}})", log);
+          "iridescenceThicknessMinimum": 200, "iridescenceThicknessMaximum": 500}}})",
+                              log);
     EXPECT_TRUE(log.warnings().empty());
     EXPECT_TRUE(m.isLayered());
     EXPECT_FLOAT_EQ(m.clearcoat, 0.5f);
@@ -39,7 +40,8 @@ TEST(GltfLayers, FactorsAreRead) {
 TEST(GltfLayers, DefaultsAreThoseOfTheSpecification) {
     MessageLog log;
     const Material m = loaded(R"({"extensions": {"KHR_materials_clearcoat": {}, "KHR_materials_sheen": {},
-        "KHR_materials_anisotropy": {}, "KHR_materials_iridescence": {}}})", log);
+        "KHR_materials_anisotropy": {}, "KHR_materials_iridescence": {}}})",
+                              log);
     EXPECT_FALSE(m.isLayered());
     EXPECT_FLOAT_EQ(m.iridescenceIor, 1.3f);
     EXPECT_FLOAT_EQ(m.iridescenceThicknessMin, 100);
@@ -51,7 +53,8 @@ TEST(GltfLayers, NonsenseIsClamped) {
     const Material m = loaded(R"({"extensions": {
         "KHR_materials_clearcoat": {"clearcoatFactor": 7, "clearcoatRoughnessFactor": -1},
         "KHR_materials_sheen": {"sheenColorFactor": [-1, 9, 0]},
-        "KHR_materials_iridescence": {"iridescenceIor": 0, "iridescenceThicknessMaximum": -5}}})", log);
+        "KHR_materials_iridescence": {"iridescenceIor": 0, "iridescenceThicknessMaximum": -5}}})",
+                              log);
     EXPECT_FLOAT_EQ(m.clearcoat, 1);
     EXPECT_FLOAT_EQ(m.clearcoatRoughness, 0);
     EXPECT_EQ(m.sheenColor, Vec3(0, 1, 0));
@@ -64,7 +67,8 @@ TEST(GltfLayers, UnlitScattersNothing) {
     const Material m = loaded(R"({"pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.3, 0.4, 1]}, "extensions": {
         "KHR_materials_unlit": {}, "KHR_materials_clearcoat": {"clearcoatFactor": 1},
         "KHR_materials_sheen": {"sheenColorFactor": [1, 1, 1]}, "KHR_materials_anisotropy": {"anisotropyStrength": 1},
-        "KHR_materials_iridescence": {"iridescenceFactor": 1}}})", log);
+        "KHR_materials_iridescence": {"iridescenceFactor": 1}}})",
+                              log);
     EXPECT_FALSE(m.isLayered());
     EXPECT_EQ(m.emission, Vec3(0.2f, 0.3f, 0.4f));
 }
@@ -72,13 +76,17 @@ TEST(GltfLayers, UnlitScattersNothing) {
 TEST(GltfLayers, EmissionBeyondSumsIsLimitedAndSaid) {
     MessageLog log;
     const Material m = loaded(R"({"emissiveFactor": [1e9, 1e9, 0],
-        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 1e38}}})", log);
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 1e38}}})",
+                              log);
     EXPECT_EQ(m.emission, Vec3(1e9f, 1e9f, 0));
     ASSERT_EQ(log.warnings().size(), 1u);
     EXPECT_NE(log.warnings()[0].find("/materials/0 emits"), std::string::npos);
     MessageLog quiet;
     EXPECT_EQ(loaded(R"({"emissiveFactor": [1, 1, 1],
-        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 1e6}}})", quiet).emission, Vec3(1e6f));
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 1e6}}})",
+                     quiet)
+                  .emission,
+              Vec3(1e6f));
     EXPECT_TRUE(quiet.warnings().empty());
 }
 

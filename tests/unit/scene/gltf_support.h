@@ -86,7 +86,8 @@ public:
         return load(log);
     }
     void expectRefused(const std::initializer_list<std::string>& parts, ErrorKind kind = ErrorKind::BadInput) const {
-        expectError(kind, [&] { load(); }, parts);
+        expectError(
+            kind, [&] { load(); }, parts);
     }
     const TemporaryFolder& folder() const { return folder_; }
 

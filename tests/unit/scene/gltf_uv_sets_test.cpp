@@ -30,9 +30,7 @@ void build(GltfBuilder& file, const std::vector<int>& sets) {
     file.json["materials"] = {material};
 }
 
-Vec2 firstUv(const Scene& scene, const Texture& texture) {
-    return scene.instances.at(0).mesh->uv[texture.uvSet].at(0);
-}
+Vec2 firstUv(const Scene& scene, const Texture& texture) { return scene.instances.at(0).mesh->uv[texture.uvSet].at(0); }
 
 TEST(GltfUvSets, AnyTwoOfManyAreCarried) {
     for (const std::vector<int>& sets : {std::vector<int>{0, 1}, {1, 0}, {3, 2}, {0, 3}, {2, 2}}) {
@@ -104,7 +102,8 @@ void expectTangent(const Mesh& mesh, uint32_t material, const Vec3& along) {
     int corners = 0;
     for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
         for (int c = 0; c < 3 && mesh.materialOf(t) == material; ++c, ++corners)
-            EXPECT_LT(glm::distance(Vec3(mesh.tangents[mesh.triangles[t][c]]), along), 1e-5f) << "material " << material;
+            EXPECT_LT(glm::distance(Vec3(mesh.tangents[mesh.triangles[t][c]]), along), 1e-5f)
+                << "material " << material;
     EXPECT_EQ(corners, 6);
 }
 

@@ -1,9 +1,9 @@
-#include "scene/asset_folder.h"
 #include "scene/load.h"
+#include "scene/asset_folder.h"
 
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -29,7 +29,8 @@ public:
 
 /// A 2x1 Radiance file, flat scanlines: white and black.
 std::string tinyHdr() {
-    return std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n") + std::string("\x80\x80\x80\x81\0\0\0\0", 8);
+    return std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n") +
+           std::string("\x80\x80\x80\x81\0\0\0\0", 8);
 }
 
 TEST(LoadScene, UnknownKindsAreNamed) {
@@ -52,7 +53,8 @@ TEST(LoadScene, OnlyGltfHasScenesAndVariants) {
     LoadOptions scene, variant;
     scene.sceneIndex = 7, variant.variant = "red";
     expectError(ErrorKind::Usage, [&] { loadScene(folder / "a.obj", log, scene); }, {"one scene", "scene.index", "7"});
-    expectError(ErrorKind::Usage, [&] { loadScene(folder / "a.obj", log, variant); }, {"variants", "scene.variant", "red"});
+    expectError(ErrorKind::Usage, [&] { loadScene(folder / "a.obj", log, variant); },
+                {"variants", "scene.variant", "red"});
     EXPECT_NE(loadScene(folder / "a.obj", log), nullptr);
 }
 
@@ -74,8 +76,9 @@ TEST(LoadScene, BrokenFilesSayWhereAndWhy) {
 
 TEST(LoadScene, OurOwnFilesStayDarkButGetACamera) {
     TemporaryFolder folder;
-    writeFileAtomically(folder / "s.json", std::string_view(
-        R"({"version": 1, "assets": {"b": {"box": {}}}, "instances": [{"asset": "b"}]})"));
+    writeFileAtomically(
+        folder / "s.json",
+        std::string_view(R"({"version": 1, "assets": {"b": {"box": {}}}, "instances": [{"asset": "b"}]})"));
     MessageLog log;
     const auto scene = loadScene(folder / "s.json", log);
     EXPECT_FALSE(scene->environment.visible());
@@ -89,7 +92,8 @@ TEST(LoadScene, FilesAreSoughtBesideTheSceneFile) {
     TemporaryFolder folder;
     fs::create_directory(folder / "sub");
     writeFileAtomically(folder / "sub/sky.hdr", tinyHdr());
-    writeFileAtomically(folder / "s.json", std::string_view(R"({"version": 1, "environment": {"file": "sub/sky.hdr"}})"));
+    writeFileAtomically(folder / "s.json",
+                        std::string_view(R"({"version": 1, "environment": {"file": "sub/sky.hdr"}})"));
     MessageLog log;
     const auto scene = loadScene(folder / "s.json", log);
     ASSERT_NE(scene->environment.image, nullptr);
@@ -180,10 +184,13 @@ TEST(FindScene, SeeksNamesInTheVariablesFoldersFirst) {
 /// $LUMISCOPE_ASSETS while it lives.
 class AssetsVariable {
 public:
-    explicit AssetsVariable(const fs::path& folder) : before_(std::getenv("LUMISCOPE_ASSETS") ? std::getenv("LUMISCOPE_ASSETS") : "") {
+    explicit AssetsVariable(const fs::path& folder)
+        : before_(std::getenv("LUMISCOPE_ASSETS") ? std::getenv("LUMISCOPE_ASSETS") : "") {
         setenv("LUMISCOPE_ASSETS", folder.c_str(), 1);
     }
-    ~AssetsVariable() { before_.empty() ? unsetenv("LUMISCOPE_ASSETS") : setenv("LUMISCOPE_ASSETS", before_.c_str(), 1); }
+    ~AssetsVariable() {
+        before_.empty() ? unsetenv("LUMISCOPE_ASSETS") : setenv("LUMISCOPE_ASSETS", before_.c_str(), 1);
+    }
 
 private:
     std::string before_;
@@ -202,9 +209,13 @@ TEST(Assets, AreSoughtInTheVariablesFolder) {
             if (entry.name == "far") return entry.missing;
         return std::string("not listed");
     };
-    const auto load = [&] { MessageLog log; return loadScene(scenes / "far.json", log); };
+    const auto load = [&] {
+        MessageLog log;
+        return loadScene(scenes / "far.json", log);
+    };
     EXPECT_NE(missing().find("white.png: no such asset; expected $LUMISCOPE_ASSETS"), std::string::npos) << missing();
-    expectError(ErrorKind::BadInput, load, {"far.json:2:", "white.png", "$LUMISCOPE_ASSETS to name a folder that holds white.png"});
+    expectError(ErrorKind::BadInput, load,
+                {"far.json:2:", "white.png", "$LUMISCOPE_ASSETS to name a folder that holds white.png"});
 
     writePng(assets / "white.png", Image8{{1, 1}, {255, 255, 255, 255}});
     expectError(ErrorKind::BadInput, load, {"far.json:3:", "asset \"shape\"", "no such asset", "models/shape.obj"});
@@ -223,7 +234,8 @@ TEST(Assets, StayInTheirFolder) {
         const std::string text = std::string(R"({"version": 1, "environment": {"file": ")") + name + "\"}}";
         writeFileAtomically(folder / "scene.json", std::string_view(text));
         MessageLog log;
-        expectError(ErrorKind::BadInput, [&] { loadScene(folder / "scene.json", log); }, {"leads out of the folder of assets"});
+        expectError(ErrorKind::BadInput, [&] { loadScene(folder / "scene.json", log); },
+                    {"leads out of the folder of assets"});
     }
 }
 
@@ -231,7 +243,8 @@ TEST(Assets, StayInTheirFolder) {
 TEST(Load, StopsAtEveryStep) {
     TemporaryFolder folder;
     writeFileAtomically(folder / "cage.obj", std::string_view("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"));
-    const std::string text = R"({"version": 1, "assets": {"cage": {"obj": "cage.obj", "subdivision": "catmull-clark", "rate": 64},
+    const std::string text =
+        R"({"version": 1, "assets": {"cage": {"obj": "cage.obj", "subdivision": "catmull-clark", "rate": 64},
         "ball": {"sphere": {}}}, "instances": [{"asset": "cage"}, {"asset": "ball"}]})";
     writeFileAtomically(folder / "a.json", std::string_view(text));
     MessageLog log;
@@ -271,12 +284,15 @@ TEST(Assets, OfASceneFileMayLieOutsideItsFolder) {
     EXPECT_EQ(load("../shared meshes/shape.obj")->triangleCount(), 1);
     EXPECT_EQ(load((folder / "shared meshes/shape.obj").string())->triangleCount(), 1) << "an absolute path";
     // The glTF in the middle is read, but not followed out of its folder.
-    writeFileAtomically(folder / "shared meshes/climbs.gltf",
-                        std::string_view(R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "../sky.hdr", "byteLength": 4}]})"));
-    const std::string text = R"({"version": 1, "assets": {"it": {"gltf": "../shared meshes/climbs.gltf"}}, "instances": [{"asset": "it"}]})";
+    writeFileAtomically(
+        folder / "shared meshes/climbs.gltf",
+        std::string_view(R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "../sky.hdr", "byteLength": 4}]})"));
+    const std::string text =
+        R"({"version": 1, "assets": {"it": {"gltf": "../shared meshes/climbs.gltf"}}, "instances": [{"asset": "it"}]})";
     writeFileAtomically(folder / "scenes/b.json", std::string_view(text));
     MessageLog log;
-    expectError(ErrorKind::BadInput, [&] { loadScene(folder / "scenes/b.json", log); }, {"asset \"it\"", "climbs.gltf", "leads out"});
+    expectError(ErrorKind::BadInput, [&] { loadScene(folder / "scenes/b.json", log); },
+                {"asset \"it\"", "climbs.gltf", "leads out"});
 }
 
 // A title is no file.

@@ -25,9 +25,10 @@ Scene loadText(const std::string& obj, const std::string& mtl = {}) {
 }
 
 // A square of two faces side by side, red and green, textured over all of it; as a cage its edges are creases.
-const std::string kTwoFaces = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 2 0\nv 1 2 0\nv 2 2 0\n"
-                              "vt 0 0\nvt .5 0\nvt 1 0\nvt 0 1\nvt .5 1\nvt 1 1\n"
-                              "usemtl red\nf 1/1 2/2 5/5 4/4\nusemtl green\nf 2/2 3/3 6/6 5/5\n";
+const std::string kTwoFaces =
+    "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 2 0\nv 1 2 0\nv 2 2 0\n"
+    "vt 0 0\nvt .5 0\nvt 1 0\nvt 0 1\nvt .5 1\nvt 1 1\n"
+    "usemtl red\nf 1/1 2/2 5/5 4/4\nusemtl green\nf 2/2 3/3 6/6 5/5\n";
 const std::string kRedAndGreen = "newmtl red\nKd 1 0 0\nnewmtl green\nKd 0 1 0\n";
 const std::string kTags = "#t interpolateboundary 1/0/0 1\n#t corner 4/1/0 0 2 3 5 10\n";
 
@@ -41,7 +42,8 @@ float area(std::span<const Vec3> corners, const std::vector<UVec3>& triangles) {
 TEST(Triangulate, ConvexPolygonsAreCovered) {
     std::vector<Vec3> corners;
     for (int i = 0; i < 12; ++i)
-        corners.emplace_back(std::cos(2 * kPi * static_cast<float>(i) / 12), std::sin(2 * kPi * static_cast<float>(i) / 12), 0);
+        corners.emplace_back(std::cos(2 * kPi * static_cast<float>(i) / 12),
+                             std::sin(2 * kPi * static_cast<float>(i) / 12), 0);
     const std::vector<UVec3> triangles = triangulatePolygon(corners);
     EXPECT_EQ(triangles.size(), 10u);
     EXPECT_NEAR(area(corners, triangles), 3, 1e-5f);
@@ -99,10 +101,11 @@ TEST(Obj, SmoothingGroupsShareNormals) {
 }
 
 TEST(Obj, MaterialsOfTheirFaces) {
-    const Scene scene = loadText("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl lamp\nf 1 2 3\nusemtl chrome\nf 3 2 1\n",
-                                 "newmtl chrome\nKd 0 0 0\nKs 0.9 0.8 0.7\nNs 1000\n"
-                                 "newmtl lamp\nKd 0.5 0.5 0.5\nKe 3 2 1\nNs 10\nKs 0 0 0\nd 0.5\n"
-                                 "newmtl pbr\nKd 1 0 0\nPr 0.3\nPm 1\n");
+    const Scene scene =
+        loadText("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl lamp\nf 1 2 3\nusemtl chrome\nf 3 2 1\n",
+                 "newmtl chrome\nKd 0 0 0\nKs 0.9 0.8 0.7\nNs 1000\n"
+                 "newmtl lamp\nKd 0.5 0.5 0.5\nKe 3 2 1\nNs 10\nKs 0 0 0\nd 0.5\n"
+                 "newmtl pbr\nKd 1 0 0\nPr 0.3\nPm 1\n");
     ASSERT_EQ(scene.materials.size(), 3u);
     EXPECT_EQ(scene.instances[0].mesh->triangleMaterial, (std::vector<uint32_t>{1, 0}));
     EXPECT_EQ(scene.materials[0].metallic, 1);
@@ -128,12 +131,19 @@ TEST(Obj, MissingFilesAreWarnings) {
 
 TEST(Obj, NumbersThatAreNoneAreRefusedOrCleanedWithTheirLine) {
     const char* rest = "v 1 0 0\nv 0 1 0\nf 1 2 3\n";
-    for (const auto& [line, found] : {std::pair("v 1 nan x", "nan"), {"v 1 2", "too few"}, {"v 0 0 1e99", "1e99"},
-                                      {"v 0 inf 0", "inf"}, {"v 1,5 0 0", "1,5"}, {"v", "too few"}})
-        expectError(ErrorKind::BadInput, [&] { loadText(std::string("# one\n\t") + line + "\n" + rest); }, {"a.obj:2", found});
+    for (const auto& [line, found] : {std::pair("v 1 nan x", "nan"),
+                                      {"v 1 2", "too few"},
+                                      {"v 0 0 1e99", "1e99"},
+                                      {"v 0 inf 0", "inf"},
+                                      {"v 1,5 0 0", "1,5"},
+                                      {"v", "too few"}})
+        expectError(ErrorKind::BadInput, [&] { loadText(std::string("# one\n\t") + line + "\n" + rest); },
+                    {"a.obj:2", found});
     MessageLog log;
-    const Scene scene = loadText("v +0 -.5 1e-400 # a place\r\nv 1 0. 0 0.5 .5 1E-1\nv 0 1 0\nvt nan 0\nvt 1 0\nvn -nan(ind) 0 0\n"
-                                 "vn 0 0\nf 1/1/1 2/2/1 3/2/2\n", log);
+    const Scene scene = loadText(
+        "v +0 -.5 1e-400 # a place\r\nv 1 0. 0 0.5 .5 1E-1\nv 0 1 0\nvt nan 0\nvt 1 0\nvn -nan(ind) 0 0\n"
+        "vn 0 0\nf 1/1/1 2/2/1 3/2/2\n",
+        log);
     EXPECT_EQ(scene.instances.at(0).mesh->positions[0], Vec3(0, -0.5f, 0));
     for (const Vec3& n : scene.instances[0].mesh->normals) EXPECT_NEAR(glm::length(n), 1, 1e-6f);
     ASSERT_EQ(log.warnings().size(), 1u);

@@ -10,7 +10,8 @@ namespace lumi {
 namespace {
 
 void expectNear(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
-    EXPECT_LT(glm::length(a - b), tolerance) << a.x << ' ' << a.y << ' ' << a.z << " against " << b.x << ' ' << b.y << ' ' << b.z;
+    EXPECT_LT(glm::length(a - b), tolerance)
+        << a.x << ' ' << a.y << ' ' << a.z << " against " << b.x << ' ' << b.y << ' ' << b.z;
 }
 
 Quat aroundZ(float angleDeg) { return glm::angleAxis(radians(angleDeg), Vec3(0, 0, 1)); }
@@ -58,8 +59,7 @@ TEST(Pose, WorldMatricesMultiplyDownTheTree) {
     scene.nodes = {node(-1, {1, 0, 0}), node(0, {0, 2, 0}, aroundZ(90)), node(1, {3, 0, 0}, aroundZ(0), Vec3(2))};
     const NodePose pose = poseNodes(scene, {});
     expectNear(transformPoint(pose.worldFromNode[2], {1, 0, 0}), {1, 2 + 3 + 2, 0});
-    for (int i = 0; i < 3; ++i)
-        EXPECT_EQ(worldFromNodeAt(scene, i, {}), pose.worldFromNode[static_cast<size_t>(i)]);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(worldFromNodeAt(scene, i, {}), pose.worldFromNode[static_cast<size_t>(i)]);
 }
 
 TEST(Pose, MatricesThatAreNoTransformAreKept) {

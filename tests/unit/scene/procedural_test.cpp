@@ -165,8 +165,12 @@ TEST(Procedural, SmoothNormalsAreTheSurfaces) {
 }
 
 TEST(Procedural, FlatShapesFaceWhereTheySay) {
-    const std::array<std::pair<const char*, Vec3>, 6> facings{{{"x", {1, 0, 0}}, {"-x", {-1, 0, 0}}, {"y", {0, 1, 0}},
-                                                               {"-y", {0, -1, 0}}, {"z", {0, 0, 1}}, {"-z", {0, 0, -1}}}};
+    const std::array<std::pair<const char*, Vec3>, 6> facings{{{"x", {1, 0, 0}},
+                                                               {"-x", {-1, 0, 0}},
+                                                               {"y", {0, 1, 0}},
+                                                               {"-y", {0, -1, 0}},
+                                                               {"z", {0, 0, 1}},
+                                                               {"-z", {0, 0, -1}}}};
     for (const auto& [name, normal] : facings)
         for (const char* shape : {"rectangle", "disk", "plane-grid"}) {
             const Mesh mesh = builtMesh(shape, {{"facing", std::string(name)}});

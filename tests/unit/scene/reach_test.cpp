@@ -153,7 +153,8 @@ TEST(Reach, LightsAreFollowed) {
     scene.lights = {light};
     poseScene(std::make_shared<const Scene>(scene), {});
     scene.nodes[1].local.translation.y = 1e30f;
-    expectError(ErrorKind::BadInput, [&] { poseScene(std::make_shared<const Scene>(scene), {}); }, {"far.gltf", "light \"lamp\"", "1e+30"});
+    expectError(ErrorKind::BadInput, [&] { poseScene(std::make_shared<const Scene>(scene), {}); },
+                {"far.gltf", "light \"lamp\"", "1e+30"});
 }
 
 TEST(Reach, CamerasAreToo) {
@@ -162,12 +163,14 @@ TEST(Reach, CamerasAreToo) {
     requireReach(poseCamera(camera, extent), "a.gltf");
     for (const float far : {1e30f, kNan, -kInfinity}) {
         camera.eye = {0, far, 0};
-        expectError(ErrorKind::BadInput, [&] { requireReach(poseCamera(camera, extent), "a.gltf"); }, {"a.gltf", "the camera"});
+        expectError(ErrorKind::BadInput, [&] { requireReach(poseCamera(camera, extent), "a.gltf"); },
+                    {"a.gltf", "the camera"});
     }
     camera.eye = {0, 0, 5};
     camera.projection = Projection::Orthographic;
     camera.yMag = 3e38f;
-    expectError(ErrorKind::BadInput, [&] { requireReach(poseCamera(camera, extent), "a.gltf"); }, {"the camera", "inf"});
+    expectError(ErrorKind::BadInput, [&] { requireReach(poseCamera(camera, extent), "a.gltf"); },
+                {"the camera", "inf"});
 }
 
 }  // namespace

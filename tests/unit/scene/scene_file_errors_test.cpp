@@ -121,7 +121,8 @@ TEST(SceneFileErrors, Instances) {
         {"{\"name\": \"a\"}, {\"name\": \"a\"}", "s.json:2:39: two instances are named \"a\""},
         {"{\"scale\": 0}", "s.json:2:25: \"scale\" is 0; expected no zero"},
         {"{\"scale\": [1, 2]}", "s.json:2:25: \"scale\" is an array of 2; expected three numbers"},
-        {"{\"look-at\": [0, 0, 0]}", "s.json:2:16: unknown key \"look-at\"; expected one of \"asset\", \"interpolation\", \"keys\", \"loop\", "
+        {"{\"look-at\": [0, 0, 0]}",
+         "s.json:2:16: unknown key \"look-at\"; expected one of \"asset\", \"interpolation\", \"keys\", \"loop\", "
          "\"name\", \"parent\", \"rotate-deg\", \"scale\" or \"translate\""},
         {"{\"keys\": [{\"translate\": [0, 0, 0]}]}", "s.json:2:25: \"keys\" has no \"time\""},
         {"{\"keys\": [{\"time\": 1}, {\"time\": 1}]}",
@@ -142,9 +143,11 @@ TEST(SceneFileErrors, SlotsByName) {
 TEST(SceneFileErrors, LightsCamerasAndEnvironment) {
     expectFaults({
         {"{\"version\": 1, \"lights\": {\"l\": {}}}",
-         "s.json:1:32: light \"l\" has no kind; expected one of \"rectangle\", \"disk\", \"sphere\", \"point\", \"spot\" or "
+         "s.json:1:32: light \"l\" has no kind; expected one of \"rectangle\", \"disk\", \"sphere\", \"point\", "
+         "\"spot\" or "
          "\"directional\""},
-        {"{\"version\": 1, \"lights\": {\"l\": {\"point\": {}, \"spot\": {}}}}", "s.json:1:54: light \"l\" has two kinds"},
+        {"{\"version\": 1, \"lights\": {\"l\": {\"point\": {}, \"spot\": {}}}}",
+         "s.json:1:54: light \"l\" has two kinds"},
         {"{\"version\": 1, \"lights\": {\"l\": {\"sphere\": {\"size\": [1, 1]}}}}",
          "s.json:1:44: unknown key \"size\"; expected \"radius\""},
         {"{\"version\": 1, \"lights\": {\"l\": {\"sphere\": {}, \"irradiance\": [1, 1, 1]}}}",

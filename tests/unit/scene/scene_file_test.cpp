@@ -13,8 +13,8 @@ namespace lumi::test {
 namespace {
 
 void expectNear(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
-    EXPECT_LE(glm::distance(a, b), tolerance) << a.x << ' ' << a.y << ' ' << a.z << " is not " << b.x << ' ' << b.y << ' '
-                                              << b.z;
+    EXPECT_LE(glm::distance(a, b), tolerance)
+        << a.x << ' ' << a.y << ' ' << a.z << " is not " << b.x << ' ' << b.y << ' ' << b.z;
 }
 
 Vec3 originOf(const Scene& scene, int node, float time) {
@@ -85,7 +85,8 @@ TEST(SceneFile, InstancesShareMeshesWhateverTheyWear) {
     EXPECT_EQ(meshes.size(), 1u);
     const auto wears = [&](size_t i) {
         const Instance& instance = scene.instances[i];
-        return scene.materials[instance.material >= 0 ? static_cast<size_t>(instance.material) : instance.mesh->material]
+        return scene
+            .materials[instance.material >= 0 ? static_cast<size_t>(instance.material) : instance.mesh->material]
             .name;
     };
     EXPECT_EQ(scene.instances[0].name, "ball");
@@ -115,7 +116,8 @@ TEST(SceneFile, RotationsAreAboutFixedAxesInOrder) {
 TEST(SceneFile, KeysAnimate) {
     const auto keyed = [](const std::string& how) {
         return parseScene(R"({"version": 1, "instances": [{"keys": [{"time": 0, "translate": [0, 0, 0]},
-            {"time": 1, "translate": [1, 0, 0]}, {"time": 3, "translate": [0, 0, 0]}])" + how + "}]}");
+            {"time": 1, "translate": [1, 0, 0]}, {"time": 3, "translate": [0, 0, 0]}])" +
+                          how + "}]}");
     };
     const Scene linear = keyed("");
     EXPECT_EQ(linear.duration(), 3);
@@ -132,9 +134,7 @@ TEST(SceneFile, KeysAnimate) {
 TEST(SceneFile, KeysTouchOnlyWhatTheyMention) {
     const Scene scene = parseScene(R"({"version": 1, "instances": [{"translate": [0, 7, 0], "keys": [
       {"time": 0, "rotate-deg": [0, 0, 0]}, {"time": 1, "rotate-deg": [0, 360, 0]}]}]})");
-    const auto forward = [&](float time) {
-        return transformVector(worldFromNodeAt(scene, 0, time), Vec3(0, 0, 1));
-    };
+    const auto forward = [&](float time) { return transformVector(worldFromNodeAt(scene, 0, time), Vec3(0, 0, 1)); };
     expectNear(originOf(scene, 0, 0.3f), {0, 7, 0});
     // A whole turn goes all the way round: a quarter of the time is a quarter turn.
     expectNear(forward(0.25f), {1, 0, 0});
@@ -246,7 +246,8 @@ TEST(SceneFile, ObjAssetsAndSubdivisionCages) {
     writeFileAtomically(folder / "cube.obj", std::string_view(kCube));
     const Scene scene = parseScene(R"({"version": 1,
       "assets": {"cube": {"obj": "cube.obj"}, "round": {"obj": "cube.obj", "subdivision": "catmull-clark", "rate": 4}},
-      "materials": {"red": {}}, "instances": [{"asset": "cube", "material": "red"}, {"asset": "round"}]})", folder.path());
+      "materials": {"red": {}}, "instances": [{"asset": "cube", "material": "red"}, {"asset": "round"}]})",
+                                   folder.path());
     ASSERT_EQ(scene.instances.size(), 2u);
     EXPECT_EQ(scene.instances[0].mesh->triangles.size(), 12u);
     const Mesh& round = *scene.instances[1].mesh;
@@ -281,7 +282,8 @@ TEST(SceneFile, GltfAssetsBringAllTheyHold) {
     const Scene scene = parseScene(R"({"version": 1, "assets": {"a": {"gltf": "a.gltf"}}, "materials": {"red": {}},
       "cameras": {"own": {}},
       "instances": [{"name": "one", "asset": "a", "translate": [0, 10, 0]},
-                    {"name": "two", "asset": "a", "translate": [0, 20, 0], "materials": {"paint": "red"}}]})", folder.path());
+                    {"name": "two", "asset": "a", "translate": [0, 20, 0], "materials": {"paint": "red"}}]})",
+                                   folder.path());
     ASSERT_EQ(scene.instances.size(), 2u);
     EXPECT_EQ(scene.instances[0].mesh, scene.instances[1].mesh);
     expectNear(originOf(scene, scene.instances[0].node, 0), {2, 10, 0});

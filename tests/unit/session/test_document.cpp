@@ -84,7 +84,8 @@ TEST(Document, ACopyIsAValue) {
 TEST(Document, UnknownIdsNameTheNearest) {
     Document document(tinyScene());
     const auto refuse = [&](const char* id, std::initializer_list<std::string> parts) {
-        expectError(ErrorKind::Usage, [&] { document.setText(id, "1", "--set"); }, parts);
+        expectError(
+            ErrorKind::Usage, [&] { document.setText(id, "1", "--set"); }, parts);
     };
     refuse("path.max-dept", {"--set", "\"path.max-depth\""});
     refuse("material.flor-paint.roughness", {"\"material.floor-paint.roughness\""});
@@ -152,13 +153,23 @@ TEST(Document, CameraEditsHoldUntilACameraIsChosen) {
 
 TEST(Document, ChangedValuesMakeTheSameDocument) {
     Document document(tinyScene());
-    const std::pair<const char*, const char*> edits[] = {
-        {"render.width", "64"},           {"path.max-depth", "2"},   {"camera.select", "side-view"},
-        {"camera.fov-y-deg", "30"},       {"camera.eye", "1,2,3"},   {"camera.jitter", "none"},
-        {"view.layout", "wipe"},          {"view.1.buffer", "depth"}, {"view.0.exposure", "-1.25"},
-        {"light.lamp.intensity", "1,2,3"}, {"time", "0.1"},           {"accumulate.limit", "true"},
-        {"accumulate.max-samples", "9"},  {"sampler.kind", "halton"}, {"material.material-3.base-color", "0.1,0.2,0.3"},
-        {"environment.scale", "0.3"},     {"render.seed", "5"}};
+    const std::pair<const char*, const char*> edits[] = {{"render.width", "64"},
+                                                         {"path.max-depth", "2"},
+                                                         {"camera.select", "side-view"},
+                                                         {"camera.fov-y-deg", "30"},
+                                                         {"camera.eye", "1,2,3"},
+                                                         {"camera.jitter", "none"},
+                                                         {"view.layout", "wipe"},
+                                                         {"view.1.buffer", "depth"},
+                                                         {"view.0.exposure", "-1.25"},
+                                                         {"light.lamp.intensity", "1,2,3"},
+                                                         {"time", "0.1"},
+                                                         {"accumulate.limit", "true"},
+                                                         {"accumulate.max-samples", "9"},
+                                                         {"sampler.kind", "halton"},
+                                                         {"material.material-3.base-color", "0.1,0.2,0.3"},
+                                                         {"environment.scale", "0.3"},
+                                                         {"render.seed", "5"}};
     for (const auto& [id, text] : edits) document.setText(id, text);
     const nlohmann::json values = nlohmann::json::parse(document.changedValues().dump());
     EXPECT_EQ(values.size(), std::size(edits)) << values.dump();
@@ -214,9 +225,14 @@ TEST(Document, ResetsAllThatChanged) {
     scene.render.module = "svgf";
     scene.render.set = {{"view.0.buffer", "historyLength"}};
     Document document(std::make_shared<Scene>(scene));
-    for (const auto& [id, text] : std::vector<std::pair<const char*, const char*>>{
-             {"view.0.module", "none"}, {"camera.select", "side-view"}, {"camera.eye", "5,2,1"}, {"camera.jitter", "none"},
-             {"path.max-depth", "2"}, {"light.lamp.power", "3"}, {"svgf.color-alpha", "0.5"}, {"time", "2"}})
+    for (const auto& [id, text] : std::vector<std::pair<const char*, const char*>>{{"view.0.module", "none"},
+                                                                                   {"camera.select", "side-view"},
+                                                                                   {"camera.eye", "5,2,1"},
+                                                                                   {"camera.jitter", "none"},
+                                                                                   {"path.max-depth", "2"},
+                                                                                   {"light.lamp.power", "3"},
+                                                                                   {"svgf.color-alpha", "0.5"},
+                                                                                   {"time", "2"}})
         document.setText(id, text);
     std::vector<std::string> ids;
     const nlohmann::json changed = document.changedValues();

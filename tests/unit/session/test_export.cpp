@@ -24,10 +24,30 @@ TEST(Export, AnExrHoldsEveryLayerByItsContractName) {
     const FrameOutput frame = drawAll(document);
     exportView(folder / "all.exr", frame, document, {0, "all", false}, "{\"state\":1}");
     const ExrLayers layers = readExr(folder / "all.exr");
-    for (const char* name : {"R", "G", "B", "A", "Z", "noisy.R", "albedo.G", "specularAlbedo.B", "normal.X", "normal.Y",
-                             "normal.Z", "depth.Z", "position.X", "motion.X", "motion.Z", "directDiffuse.R",
-                             "indirectSpecular.B", "sampleVariance.R", "visibility.Y", "roughness.Y", "objectId",
-                             "materialId", "accumulate-sampleCount.Y", "accumulate-standardError.R"})
+    for (const char* name : {"R",
+                             "G",
+                             "B",
+                             "A",
+                             "Z",
+                             "noisy.R",
+                             "albedo.G",
+                             "specularAlbedo.B",
+                             "normal.X",
+                             "normal.Y",
+                             "normal.Z",
+                             "depth.Z",
+                             "position.X",
+                             "motion.X",
+                             "motion.Z",
+                             "directDiffuse.R",
+                             "indirectSpecular.B",
+                             "sampleVariance.R",
+                             "visibility.Y",
+                             "roughness.Y",
+                             "objectId",
+                             "materialId",
+                             "accumulate-sampleCount.Y",
+                             "accumulate-standardError.R"})
         EXPECT_TRUE(layers.channels.count(name)) << name;
     EXPECT_EQ(layers.strings.at(kStateKey), "{\"state\":1}");
     ASSERT_TRUE(layers.worldToCamera && layers.worldToNdc);
@@ -69,16 +89,19 @@ TEST(Export, APngShowsTheViewAndHoldsTheState) {
 
 TEST(Export, OtherKindsOfFilesAreRefused) {
     const Document document(tinyScene());
-    expectError(ErrorKind::Usage, [&] { exportView("a.jpg", drawAll(document), document, {}, "{}"); }, {"a.jpg", ".exr"});
+    expectError(ErrorKind::Usage, [&] { exportView("a.jpg", drawAll(document), document, {}, "{}"); },
+                {"a.jpg", ".exr"});
 }
 
 TEST(BufferSelection, ReadsNamesAndNamesTheNearest) {
-    const BufferSelection some = BufferSelection::parse("albedo,accumulate-sampleCount,standardError", "accumulate", "--buffers");
+    const BufferSelection some =
+        BufferSelection::parse("albedo,accumulate-sampleCount,standardError", "accumulate", "--buffers");
     EXPECT_EQ(some.signals, SignalSet{Signal::Albedo});
     EXPECT_EQ(some.taps, (TapSet{"sampleCount", "standardError"}));
     EXPECT_EQ(BufferSelection::parse("all", "none", "").signals, SignalSet::all());
     EXPECT_TRUE(BufferSelection::parse("", "none", "").signals.empty());
-    expectError(ErrorKind::Usage, [] { BufferSelection::parse("albdo", "none", "--buffers"); }, {"--buffers", "\"albedo\""});
+    expectError(ErrorKind::Usage, [] { BufferSelection::parse("albdo", "none", "--buffers"); },
+                {"--buffers", "\"albedo\""});
 }
 
 TEST(OutputChoice, SurvivesJson) {

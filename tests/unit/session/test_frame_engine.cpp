@@ -79,7 +79,8 @@ TEST(FrameEngine, AnotherShutterIsAnotherMean) {
     document.setText("render.fps", "4");
     const FrameOutput after = e.draw(document, 2);
     EXPECT_TRUE(after.changes.sampling);
-    EXPECT_EQ(after.convergence.at("accumulate").samples, 1u) << "the samples before saw the shutter open for another time";
+    EXPECT_EQ(after.convergence.at("accumulate").samples, 1u)
+        << "the samples before saw the shutter open for another time";
     document.setText("camera.shutter", "0");
     e.draw(document, 3), e.draw(document, 4);
     document.setText("render.fps", "60");
@@ -98,7 +99,8 @@ TEST(FrameEngine, AFrameOfTheSameNumberReplacesTheLast) {
     EXPECT_FALSE(a.changes.any());
     EXPECT_EQ(*a.results.at("accumulate"), *b.results.at("accumulate"));
     EXPECT_EQ(a.convergence.at("accumulate").samples, 2u);
-    EXPECT_EQ(*replaced.draw(document, 2).results.at("accumulate"), *straight.draw(document, 2).results.at("accumulate"));
+    EXPECT_EQ(*replaced.draw(document, 2).results.at("accumulate"),
+              *straight.draw(document, 2).results.at("accumulate"));
 }
 
 TEST(FrameEngine, AReplacedFrameKeepsItsSamplesWhereOnlyAModuleChanged) {
@@ -124,7 +126,8 @@ TEST(FrameEngine, AStoppedFrameChangesNothing) {
     std::stop_source stop;
     stop.request_stop();
     EXPECT_FALSE(stopped.engine.advance({other, 1, false, {}, {}}, stop.get_token()).has_value());
-    EXPECT_EQ(*stopped.draw(document, 1).results.at("accumulate"), *straight.draw(document, 1).results.at("accumulate"));
+    EXPECT_EQ(*stopped.draw(document, 1).results.at("accumulate"),
+              *straight.draw(document, 1).results.at("accumulate"));
 }
 
 /// Two views: the mean, then a module that can be told to stop.
@@ -175,7 +178,8 @@ TEST(FrameEngine, WhatIsAskedForDoesNotChangeTheImage) {
     const Document document(tinyScene());
     for (FrameNumber frame = 0; frame < 3; ++frame) {
         const FrameOutput a = plain.draw(document, frame);
-        const auto b = full.engine.advance({document, frame, false, SignalSet::all(), {{"accumulate", {"standardError"}}}});
+        const auto b =
+            full.engine.advance({document, frame, false, SignalSet::all(), {{"accumulate", {"standardError"}}}});
         ASSERT_TRUE(b.has_value());
         EXPECT_EQ(*a.results.at("accumulate"), *b->results.at("accumulate"));
         EXPECT_TRUE(b->signals->available().contains(SignalSet::all()));

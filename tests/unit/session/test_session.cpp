@@ -236,10 +236,12 @@ TEST_F(SessionTest, BuffersAndValues) {
     open({{"view.0.buffer", "normal"}});
     const auto buffers = session.buffers("accumulate");
     for (const char* name : {"image", "normal", "sampleCount", "objectId"})
-        EXPECT_TRUE(std::any_of(buffers.begin(), buffers.end(), [&](const BufferEntry& b) { return b.name == name; })) << name;
+        EXPECT_TRUE(std::any_of(buffers.begin(), buffers.end(), [&](const BufferEntry& b) { return b.name == name; }))
+            << name;
     const auto snapshot = session.snapshot();
     const std::vector<PixelValue> values = session.inspect(*snapshot, {3, 4});
-    const auto normal = std::find_if(values.begin(), values.end(), [](const PixelValue& v) { return v.buffer == "normal"; });
+    const auto normal =
+        std::find_if(values.begin(), values.end(), [](const PixelValue& v) { return v.buffer == "normal"; });
     ASSERT_NE(normal, values.end());
     EXPECT_EQ(normal->channels, "XYZ");
     EXPECT_EQ(normal->values[2], (*snapshot->signals)[Signal::Normal].at(2, 3, 4));
@@ -268,7 +270,8 @@ void replayTo(const std::filesystem::path& path, const Replay& replay) {
     const BufferSelection buffers = BufferSelection::parse(choice.buffers, instance, "");
     for (FrameNumber number = replay.first; number <= replay.last; ++number) {
         if (const auto values = replay.valuesOf(number)) document.apply(*values);
-        const auto frame = engine.advance({document, number, number == replay.first, buffers.signals, {{instance, buffers.taps}}});
+        const auto frame =
+            engine.advance({document, number, number == replay.first, buffers.signals, {{instance, buffers.taps}}});
         states.record(*frame, std::make_shared<Document>(document));
         if (number == replay.last) exportView(path, *frame, document, choice, states.json(choice.json()));
     }
@@ -283,7 +286,10 @@ TEST_F(SessionTest, SavedPicturesReplay) {
     session.saveView(0, folder / "shot.png");
     session.saveView(0, folder / "shot.exr");
     session.saveView(0, folder / "shot.gif");
-    waitFor("the files", [&] { return logged("Saved " + (folder / "shot.png").string()) && logged("Saved " + (folder / "shot.exr").string()) && logged("shot.gif: "); });
+    waitFor("the files", [&] {
+        return logged("Saved " + (folder / "shot.png").string()) && logged("Saved " + (folder / "shot.exr").string()) &&
+               logged("shot.gif: ");
+    });
     for (const char* name : {"shot.png", "shot.exr"}) {
         const Replay replay = readReplay(folder / name);
         EXPECT_EQ(replay.scene.name, "cornell") << name;

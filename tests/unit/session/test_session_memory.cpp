@@ -36,7 +36,8 @@ std::vector<std::filesystem::path> scenes(const TemporaryFolder& folder) {
 
 /// Growth after the warm-up, which is allowed what a big scene keeps for the next one of its size.
 void expectNoGrowth(size_t after, size_t warm) {
-    std::printf("    %s after %d loads, %s after %d\n", formatBytes(warm).c_str(), kWarmUp, formatBytes(after).c_str(), kLoads);
+    std::printf("    %s after %d loads, %s after %d\n", formatBytes(warm).c_str(), kWarmUp, formatBytes(after).c_str(),
+                kLoads);
     if (kSanitized) return;
     EXPECT_LT(after, warm + warm / 20 + kAllowedBytes);
 }
@@ -64,14 +65,16 @@ TEST_F(SessionMemory, LoadingCancellingAndLoadingAgainInASession) {
         waitFor("the scene", [&] { return !session.loadStatus().loading; });
         waitFor("its picture", [&] {
             const auto snapshot = session.snapshot();
-            return snapshot && snapshot->extent.width == width && snapshot->scene->scene->path == session.document().scene()->path;
+            return snapshot && snapshot->extent.width == width &&
+                   snapshot->scene->scene->path == session.document().scene()->path;
         });
     };
     size_t warm = 0;
     for (int i = 0; i <= kLoads; ++i) {
         // What is measured holds the same scene both times.
         const bool measured = i == kWarmUp || i == kLoads;
-        load(paths[measured ? 0 : static_cast<size_t>(i) % paths.size()], 16 + (measured ? 0 : i % 7), !measured && i % 3 == 2);
+        load(paths[measured ? 0 : static_cast<size_t>(i) % paths.size()], 16 + (measured ? 0 : i % 7),
+             !measured && i % 3 == 2);
         if (i == kWarmUp) warm = restingBytes();
     }
     expectNoGrowth(restingBytes(), warm);

@@ -116,7 +116,8 @@ TEST_F(SessionRaces, AFrameSteppedBackToTellsOfThePinnedPixel) {
     session.setInspectedPixel(Pixel{3, 4});
     session.setInspecting(true);
     waitFor("the frame with it", [&] { return !session.busy(); });
-    EXPECT_TRUE(session.snapshot()->signals->available().has(Signal::Position)) << "drawn again, though rendering is paused";
+    EXPECT_TRUE(session.snapshot()->signals->available().has(Signal::Position))
+        << "drawn again, though rendering is paused";
     const FrameNumber before = shownFrame();
     session.stepBack();
     waitFor("the frame before", [&] { return !session.busy(); });
@@ -152,7 +153,8 @@ TEST_F(SessionRaces, WhatAStepBackTakesBackCanBeUndone) {
 /// Files in a folder, by name.
 std::vector<std::string> namesIn(const std::filesystem::path& folder) {
     std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        names.push_back(entry.path().filename().string());
     std::sort(names.begin(), names.end());
     return names;
 }
@@ -169,7 +171,8 @@ TEST_F(SessionRaces, ACaptureIsNamedAfterWhatItHolds) {
     const std::string name = namesIn(folder.path())[0];
     const Replay replay = readReplay(folder / name);
     EXPECT_EQ(name, fmt::format("c.probe.image.{:04}.png", replay.last));
-    for (const auto& [frame, values] : replay.sets) EXPECT_FALSE(values.contains("view.0.module")) << "saved before the change";
+    for (const auto& [frame, values] : replay.sets)
+        EXPECT_FALSE(values.contains("view.0.module")) << "saved before the change";
 }
 
 TEST_F(SessionRaces, CapturesOfOneFrameAreTwoFiles) {
@@ -180,7 +183,8 @@ TEST_F(SessionRaces, CapturesOfOneFrameAreTwoFiles) {
     for (int i = 0; i < 2; ++i) session.captureView(0, folder / "c", "png");
     session.captureView(0, folder / "c", "exr");
     waitFor("the files", [&] {
-        return logged("Saved " + (folder / (name + ".png")).string()) && logged("Saved " + (folder / (name + "-1.png")).string()) &&
+        return logged("Saved " + (folder / (name + ".png")).string()) &&
+               logged("Saved " + (folder / (name + "-1.png")).string()) &&
                logged("Saved " + (folder / (name + ".exr")).string());
     });
     EXPECT_EQ(namesIn(folder.path()), (std::vector<std::string>{name + "-1.png", name + ".exr", name + ".png"}));
@@ -248,8 +252,10 @@ TEST_F(SessionRaces, ASkyThatArrivesLeavesWhatWasTurnedMeanwhile) {
 
 TEST_F(SessionRaces, AResetOfTheVariantTakesTheOthersAlong) {
     TemporaryFolder folder;
-    std::ofstream(folder / "scene.gltf") << R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": []}, {"nodes": []}], "scene": 0})";
-    session.open(folder / "scene.gltf", 1, "", {{"render.width", "32"}, {"render.height", "24"}, {"path.max-depth", "2"}});
+    std::ofstream(folder / "scene.gltf")
+        << R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": []}, {"nodes": []}], "scene": 0})";
+    session.open(folder / "scene.gltf", 1, "",
+                 {{"render.width", "32"}, {"render.height", "24"}, {"path.max-depth", "2"}});
     waitFor("the scene", [&] { return session.snapshot() != nullptr; });
     ASSERT_EQ(session.document().sceneIndex(), 1);
     session.reset({"path.max-depth", "render.width", "scene.index"});

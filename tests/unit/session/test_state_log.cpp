@@ -47,9 +47,10 @@ TEST(StateLog, ReplaysEachFrameBitForBit) {
     const auto scene = movingScene();
     Document document(scene);
     const std::pair<const char*, const char*> edits[] = {
-        {"path.max-depth", "3"},   {"light.lamp.power", "2"},   {"camera.eye", "0.1,2,5"}, {"view.layout", "wipe"},
-        {"accumulate.limit", "true"}, {"camera.select", "main"}, {"render.width", "19"},    {"accumulate.reset", "cut-only"},
-        {"time", "0.01"},          {"time", "0.02"},            {"view.0.module", "none"}, {"light.lamp.power", "1"}};
+        {"path.max-depth", "3"}, {"light.lamp.power", "2"},        {"camera.eye", "0.1,2,5"},
+        {"view.layout", "wipe"}, {"accumulate.limit", "true"},     {"camera.select", "main"},
+        {"render.width", "19"},  {"accumulate.reset", "cut-only"}, {"time", "0.01"},
+        {"time", "0.02"},        {"view.0.module", "none"},        {"light.lamp.power", "1"}};
     FrameNumber frame = 0;
     for (const auto& [id, text] : edits) {
         document.setText(id, text);
@@ -226,10 +227,13 @@ TEST(ReadReplay, RefusesWhatIsNoState) {
     refuse("{\"format\": \"lumiscope-state\", \"version\": 1}", "\"scene\"");
     refuse(R"({"format": "lumiscope-state", "version": 1, "scene": {"name": 3}})", "\"name\"");
     refuse(R"({"format": "lumiscope-state", "version": 1, "scene": {"name": "a", "digest": "b"}, "isa": "v3",
-               "start": {"frame": 5, "set": {}}, "frame": 2, "frames": []})", "order");
+               "start": {"frame": 5, "set": {}}, "frame": 2, "frames": []})",
+           "order");
     refuse(R"({"format": "lumiscope-state", "version": 1, "scene": {"name": "a", "digest": "b"}, "isa": "v3",
-               "start": {"frame": 0, "set": {"scene.index": "one"}}, "frame": 2, "frames": []})", "\"scene.index\"");
-    const std::string head = R"({"format": "lumiscope-state", "version": 1, "scene": {"name": "a", "digest": "b"}, "isa": "v3",
+               "start": {"frame": 0, "set": {"scene.index": "one"}}, "frame": 2, "frames": []})",
+           "\"scene.index\"");
+    const std::string head =
+        R"({"format": "lumiscope-state", "version": 1, "scene": {"name": "a", "digest": "b"}, "isa": "v3",
         "start": {"frame": 0, "set": {}}, "frame": 9, "frames": [)";
     refuse(head + R"({"frame": 1, "last": 4, "clock": {"frame": 0, "time": 0, "fps": 0}}]})", "clock");
     refuse(head + R"({"frame": 5, "last": 4, "clock": {"frame": 0, "time": 0, "fps": 60}}]})", "clock");

@@ -32,8 +32,8 @@ void write(const std::filesystem::path& path, const Image& image) {
     writeExr(path, layers);
 }
 
-/// A study of two methods and three seeds on a grey reference: "near" is off by little everywhere, "far" by much in the left
-/// half only.
+/// A study of two methods and three seeds on a grey reference: "near" is off by little everywhere, "far" by much in the
+/// left half only.
 struct Made {
     TemporaryFolder folder;
     Study study = parseStudy(R"({"version": 1, "scenes": ["cornell"], "seeds": [1, 2, 3], "metrics": ["mse"],
@@ -93,9 +93,13 @@ TEST(Figures, WholePicturesLoseTheReferencesOwnError) {
     EXPECT_NEAR(farValues("rmse").whole[1], std::sqrt(0.75) * rmse, 1e-9);
     MessageLog log;
     made.study.figures[0].metric = "mse";
-    EXPECT_NE(drawFigures(made.study, made.plan, made.records, log).at(0).caption.find("without the reference's own error"), std::string::npos);
+    EXPECT_NE(
+        drawFigures(made.study, made.plan, made.records, log).at(0).caption.find("without the reference's own error"),
+        std::string::npos);
     made.study.figures[0].metric = "relmse";
-    EXPECT_NE(drawFigures(made.study, made.plan, made.records, log).at(0).caption.find("all with the reference's own error"), std::string::npos);
+    EXPECT_NE(
+        drawFigures(made.study, made.plan, made.records, log).at(0).caption.find("all with the reference's own error"),
+        std::string::npos);
     made.study.figures[0].metric = "flip";
     EXPECT_EQ(drawFigures(made.study, made.plan, made.records, log).at(0).caption.find("own error"), std::string::npos);
 }
@@ -115,14 +119,16 @@ TEST(Figures, AStripIsDrawnAsSvgAndPng) {
     EXPECT_EQ(count("<image "), 1u + 2 * 2 * 3 + 2 + 1);
     EXPECT_EQ(count("data:image/png;base64,"), count("<image "));
     EXPECT_EQ(count("fill=\"none\" stroke="), 2u + 2 * 4) << "crops are marked in the picture, and their insets framed";
-    for (const char* text : {">noisy<", ">near<", ">far<", ">Reference<", ">cornell<", ">left<"}) EXPECT_EQ(count(text), 1u) << text;
+    for (const char* text : {">noisy<", ">near<", ">far<", ">Reference<", ">cornell<", ">left<"})
+        EXPECT_EQ(count(text), 1u) << text;
     EXPECT_NE(svg.find("±"), std::string::npos);
     EXPECT_NE(svg.find("aria-label=\"cornell, frame 0, 1 spp"), std::string::npos);
 
     const Image8 png = decodePng(figures[0].png, "strip").image8();
     EXPECT_EQ(png.extent.width, std::lround(2 * figures[0].width));
     const auto pixel = [&](double x, double y) {
-        const uint8_t* p = png.rgba.data() + 4 * (size_t(std::lround(2 * y)) * size_t(png.extent.width) + size_t(std::lround(2 * x)));
+        const uint8_t* p =
+            png.rgba.data() + 4 * (size_t(std::lround(2 * y)) * size_t(png.extent.width) + size_t(std::lround(2 * x)));
         return std::array<int, 3>{p[0], p[1], p[2]};
     };
     // sRGB of 0.5 is 188; the paper is white, the first crop's frame is its colour.
@@ -144,11 +150,12 @@ TEST(Figures, TheBestIsBoldOnlyWhereTheNoiseAllows) {
     const auto bolds = [&] {
         const std::string svg = drawFigures(made.study, made.plan, made.records, log).at(0).svg;
         size_t found = 0;
-        for (size_t at = svg.find("font-weight"); at != std::string::npos; at = svg.find("font-weight", at + 1)) ++found;
+        for (size_t at = svg.find("font-weight"); at != std::string::npos; at = svg.find("font-weight", at + 1))
+            ++found;
         return found;
     };
-    // Heads: the scene, one crop's name, three columns and the reference. Values: near is best in the left crop and over the
-    // whole picture; in the right one near and far are the same.
+    // Heads: the scene, one crop's name, three columns and the reference. Values: near is best in the left crop and
+    // over the whole picture; in the right one near and far are the same.
     EXPECT_EQ(bolds(), 6u + 2);
     made.study.seeds = {1};
     std::erase_if(made.records.rows, [](const StudyRow& row) { return row.seed != 1; });

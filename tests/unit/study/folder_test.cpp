@@ -14,8 +14,10 @@ namespace lumi::test {
 namespace {
 
 Study named(const std::string& name, const std::string& members = "") {
-    return parseStudy(R"({"version": 1, "scenes": ["cornell", "room"], "entries": [{"module": "none"}], "seeds": [1, 2], "presets": {"quick": {}})" + members + "}",
-                      name + ".json", "");
+    return parseStudy(
+        R"({"version": 1, "scenes": ["cornell", "room"], "entries": [{"module": "none"}], "seeds": [1, 2], "presets": {"quick": {}})" +
+            members + "}",
+        name + ".json", "");
 }
 
 TEST(StudyFolder, BelongsToOneStudy) {
@@ -23,18 +25,22 @@ TEST(StudyFolder, BelongsToOneStudy) {
     const std::filesystem::path out = folder / "out";
     { const StudyFolder first(named("one"), out); }
     { const StudyFolder again(named("one", ", \"title\": \"edited\""), out); }
-    expectError(ErrorKind::Usage, [&] { const StudyFolder other(named("two"), out); }, {"holds the study \"one\"", "another folder for \"two\""});
+    expectError(ErrorKind::Usage, [&] { const StudyFolder other(named("two"), out); },
+                {"holds the study \"one\"", "another folder for \"two\""});
     Study quick = named("one");
     quick.preset = "quick";
-    expectError(ErrorKind::Usage, [&] { const StudyFolder other(quick, out); }, {"holds the study \"one\"", "preset \"quick\""});
+    expectError(ErrorKind::Usage, [&] { const StudyFolder other(quick, out); },
+                {"holds the study \"one\"", "preset \"quick\""});
     const StudyFolder held(named("one"), out);
-    expectError(ErrorKind::Usage, [&] { const StudyFolder second(named("one"), out); }, {"another study runs in this folder"});
+    expectError(ErrorKind::Usage, [&] { const StudyFolder second(named("one"), out); },
+                {"another study runs in this folder"});
 }
 
 TEST(StudyFolder, StrangeFilesAreNeverTouched) {
     TemporaryFolder folder;
     writeFileAtomically(folder / "thesis.tmp", std::string_view("mine"));
-    expectError(ErrorKind::Usage, [&] { const StudyFolder other(named("one"), folder.path()); }, {"holds \"thesis.tmp\"", "an empty folder"});
+    expectError(ErrorKind::Usage, [&] { const StudyFolder other(named("one"), folder.path()); },
+                {"holds \"thesis.tmp\"", "an empty folder"});
     EXPECT_FALSE(std::filesystem::exists(folder / "study.json"));
     std::ofstream(folder / "file") << "no folder";
     expectError(ErrorKind::Usage, [&] { const StudyFolder other(named("one"), folder / "file"); }, {"cannot be made"});
@@ -44,8 +50,9 @@ TEST(StudyFolder, KeepsWhatIsNamed) {
     TemporaryFolder folder;
     {
         StudyFolder first(named("one"), folder / "out");
-        for (const char* name : {"jobs/a/job.json", "jobs/a/x.exr.tmp", "jobs/b/job.json", "references/r.exr", "references/old.exr",
-                                 "figures/f.png", "figures/f.png.1.2.tmp", "tables/t.tex", "results.csv"})
+        for (const char* name :
+             {"jobs/a/job.json", "jobs/a/x.exr.tmp", "jobs/b/job.json", "references/r.exr", "references/old.exr",
+              "figures/f.png", "figures/f.png.1.2.tmp", "tables/t.tex", "results.csv"})
             writeFileAtomically(first.path() / name, std::string_view("x"));
         first.note({"references/r.exr", "references/old.exr", "figures/f.png", "tables/t.tex"});
     }
@@ -54,10 +61,11 @@ TEST(StudyFolder, KeepsWhatIsNamed) {
         writeFileAtomically(folder / "out" / name, std::string_view("mine"));
     StudyFolder out(named("one"), folder / "out");
     out.keepOnly({"a"}, {"references/r.exr", "figures/f.png"});
-    for (const char* kept : {"jobs/a/job.json", "references/r.exr", "figures/f.png", "results.csv", "study.json", "tables/all.pdf", "figures/mine.png",
-                             "figures/mine.png.1.2.tmp", "references/mine/r.exr"})
+    for (const char* kept : {"jobs/a/job.json", "references/r.exr", "figures/f.png", "results.csv", "study.json",
+                             "tables/all.pdf", "figures/mine.png", "figures/mine.png.1.2.tmp", "references/mine/r.exr"})
         EXPECT_TRUE(std::filesystem::exists(out.path() / kept)) << kept;
-    for (const char* gone : {"jobs/b", "jobs/a/x.exr.tmp", "references/old.exr", "figures/f.png.1.2.tmp", "tables/t.tex"})
+    for (const char* gone :
+         {"jobs/b", "jobs/a/x.exr.tmp", "references/old.exr", "figures/f.png.1.2.tmp", "tables/t.tex"})
         EXPECT_FALSE(std::filesystem::exists(out.path() / gone)) << gone;
 }
 
@@ -65,7 +73,10 @@ TEST(StudyFolder, KeepsWhatIsNamed) {
 TEST(StudyFolder, TheLabelCannotNameOtherFiles) {
     TemporaryFolder folder;
     writeFileAtomically(folder / "precious", std::string_view("mine"));
-    writeFileAtomically(folder / "out" / "study.json", std::string_view(R"({"study": "one", "preset": "", "files": ["../precious", "tables/..", "references/../../precious", 7]})"));
+    writeFileAtomically(
+        folder / "out" / "study.json",
+        std::string_view(
+            R"({"study": "one", "preset": "", "files": ["../precious", "tables/..", "references/../../precious", 7]})"));
     StudyFolder out(named("one"), folder / "out");
     out.keepOnly({}, {});
     EXPECT_TRUE(std::filesystem::exists(folder / "precious") && std::filesystem::exists(out.path() / "study.json"));

@@ -16,12 +16,22 @@ namespace {
 
 /// A study of the tiny scene, flown through, and what its jobs need.
 struct SmallStudy {
-    explicit SmallStudy(const std::string& set, const std::string& frames = "") : study(parseStudy(R"({"version": 1, "scenes": ["tiny"], "frames": {"range": [0, 4], "measure": [3])" + frames + R"(},
+    explicit SmallStudy(const std::string& set, const std::string& frames = "")
+        : study(parseStudy(R"({"version": 1, "scenes": ["tiny"], "frames": {"range": [0, 4], "measure": [3])" + frames +
+                               R"(},
         "seeds": [1, 2], "size": [16, 12], "reference": {"spp": 32}, "metrics": ["mse", "temporal_reprojected"],
-        "entries": [{"module": "none"}], "set": {)" + set + "}}", "s.json", "")) {}
+        "entries": [{"module": "none"}], "set": {)" +
+                               set + "}}",
+                           "s.json", "")) {}
 
     JobContext context() {
-        return {study, plan, scene, references, log, {}, [](size_t, int) { return std::vector<StudyValue>{}; },
+        return {study,
+                plan,
+                scene,
+                references,
+                log,
+                {},
+                [](size_t, int) { return std::vector<StudyValue>{}; },
                 [](double, double, const std::string&) {}};
     }
     /// Of frame 2 of a job's run.

@@ -45,7 +45,8 @@ TEST(Intervals, HoldTheTrueMeanAsOftenAsTheySay) {
         int held = 0;
         for (int t = 0; t < trials; ++t) {
             std::vector<double> values(size);
-            for (int i = 0; i < size; ++i) values[static_cast<size_t>(i)] = 2 + normal(static_cast<uint64_t>(t * size + i));
+            for (int i = 0; i < size; ++i)
+                values[static_cast<size_t>(i)] = 2 + normal(static_cast<uint64_t>(t * size + i));
             const Interval interval = meanInterval(values, 0.95, method);
             held += interval.low <= 2 && 2 <= interval.high;
         }
@@ -61,12 +62,15 @@ TEST(Intervals, ResamplesOfAFewUnitsRankNoNoise) {
         int ranked = 0;
         for (int t = 0; t < trials; ++t) {
             std::vector<std::vector<double>> values(2, std::vector<double>(static_cast<size_t>(size)));
-            for (int i = 0; i < 2 * size; ++i) values[static_cast<size_t>(i & 1)][static_cast<size_t>(i / 2)] = normal(static_cast<uint64_t>((size * trials + t) * 16 + i));
+            for (int i = 0; i < 2 * size; ++i)
+                values[static_cast<size_t>(i & 1)][static_cast<size_t>(i / 2)] =
+                    normal(static_cast<uint64_t>((size * trials + t) * 16 + i));
             ranked += rankMethods(values, false, 0.95, IntervalMethod::Bootstrap)[0].certain();
         }
         EXPECT_LE(ranked / double(trials), 0.08) << size << " units";
     }
-    EXPECT_TRUE(meanInterval(std::vector<double>{1, 1.1, 0.9, 1, 1.2, 0.8}, 0.95, IntervalMethod::Bootstrap).excludesZero());
+    EXPECT_TRUE(
+        meanInterval(std::vector<double>{1, 1.1, 0.9, 1, 1.2, 0.8}, 0.95, IntervalMethod::Bootstrap).excludesZero());
 }
 
 TEST(Intervals, PairsRemoveWhatBothShare) {
@@ -186,7 +190,8 @@ TEST(Slopes, ACurveThatTurnsBackIsReadFromItsEnd) {
     EXPECT_NEAR(logLogAt(error, spp, 0.1909, Course::Falling), 1.005, 0.001);
     const double crossed = logLogAt(error, spp, 0.137, Course::Falling);
     EXPECT_TRUE(4 < crossed && crossed < 8) << "reached at 2 spp, lost again, and reached for good after 4";
-    EXPECT_TRUE(std::isnan(logLogAt(error, spp, 0.2, Course::Falling)) && std::isnan(logLogAt(error, spp, 0.05, Course::Falling)));
+    EXPECT_TRUE(std::isnan(logLogAt(error, spp, 0.2, Course::Falling)) &&
+                std::isnan(logLogAt(error, spp, 0.05, Course::Falling)));
 }
 
 }  // namespace

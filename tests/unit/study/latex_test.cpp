@@ -12,12 +12,13 @@ namespace {
 
 /// Three methods with four seeds: "best" is surely so by mse; by rmse nothing is told from anything.
 struct Sample {
-    Study study = parseStudy(R"({"version": 1, "title": "50% & more_#1", "scenes": ["cornell", {"scene": "room", "name": "a_b"}],
+    Study study =
+        parseStudy(R"({"version": 1, "title": "50% & more_#1", "scenes": ["cornell", {"scene": "room", "name": "a_b"}],
         "seeds": [1, 2, 3, 4], "metrics": ["mse", "rmse"], "spp": [1, 2],
         "entries": [{"name": "best_of", "module": "accumulate"}, {"name": "b", "module": "accumulate"}, {"name": "c", "module": "none"}],
         "pairs": [{"entry": "best_of", "against": "b"}],
         "ablations": [{"entry": "best_of", "stages": [{"name": "the limit", "set": {"limit": true}}]}]})",
-                             "t_x.json", "");
+                   "t_x.json", "");
     StudyPlan plan = planStudy(study);
     StudyRecords records;
 
@@ -31,9 +32,18 @@ struct Sample {
         StudyRow row;
         row.scene = scene, row.method = method, row.spp = spp, row.seed = seed;
         const double level[] = {1, 2, 4, 1.5};
-        row.metrics = {{"mse", (level[method] + 0.01 * seed) / spp}, {"rmse", 1 + 0.1 * ((seed * 7 + static_cast<int>(method) * 3) % 5)}};
+        row.metrics = {{"mse", (level[method] + 0.01 * seed) / spp},
+                       {"rmse", 1 + 0.1 * ((seed * 7 + static_cast<int>(method) * 3) % 5)}};
         records.rows.push_back(row);
-        records.times.push_back({scene, method, spp, seed, 10.0 * spp, 0.5, 1.0 + static_cast<double>(method) + 0.01 * seed, 1000, {{"stage", 0.5}}});
+        records.times.push_back({scene,
+                                 method,
+                                 spp,
+                                 seed,
+                                 10.0 * spp,
+                                 0.5,
+                                 1.0 + static_cast<double>(method) + 0.01 * seed,
+                                 1000,
+                                 {{"stage", 0.5}}});
     }
     std::vector<LatexTable> tables() const {
         return latexTables(study, plan, summarize(study, plan, records), summarizeTimes(study, plan, records));
@@ -45,8 +55,8 @@ struct Sample {
     }
 };
 
-/// What would stop LaTeX: braces and dollars that do not pair, environments that do not close, characters that mean something,
-/// rows with a wrong number of cells.
+/// What would stop LaTeX: braces and dollars that do not pair, environments that do not close, characters that mean
+/// something, rows with a wrong number of cells.
 void expectSound(const std::string& text, const std::string& name) {
     int braces = 0, dollars = 0;
     std::vector<std::string> environments;
@@ -103,12 +113,15 @@ TEST(Latex, EveryTableIsSound) {
         const std::string columns = table.text.substr(begin, end - begin);
         const size_t expected = columns[0] == 'l' && columns.find("p{") != std::string::npos ? 2 : columns.size();
         size_t rows = 0, at = end;
-        for (size_t stop = table.text.find("\\\\", at); stop != std::string::npos; at = stop + 2, stop = table.text.find("\\\\", at), ++rows)
-            EXPECT_EQ(cellsOf(table.text.substr(at, stop - at)), expected) << table.name << ": " << table.text.substr(at, stop - at);
+        for (size_t stop = table.text.find("\\\\", at); stop != std::string::npos;
+             at = stop + 2, stop = table.text.find("\\\\", at), ++rows)
+            EXPECT_EQ(cellsOf(table.text.substr(at, stop - at)), expected)
+                << table.name << ": " << table.text.substr(at, stop - at);
         EXPECT_GT(rows, 1u) << table.name;
     }
-    EXPECT_EQ(names, (std::vector<std::string>{"results-cornell", "results-a-b", "results-all-scenes", "times-cornell", "times-a-b", "equal-cornell", "equal-a-b",
-                                               "ablation-cornell", "ablation-a-b", "ablation-all-scenes", "metrics"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"results-cornell", "results-a-b", "results-all-scenes", "times-cornell",
+                                               "times-a-b", "equal-cornell", "equal-a-b", "ablation-cornell",
+                                               "ablation-a-b", "ablation-all-scenes", "metrics"}));
     const std::string document = latexDocument(sample.study, {}, tables);
     expectSound(document, "all.tex");
     for (const std::string& name : names) EXPECT_NE(document.find("\\input{" + name + "}"), std::string::npos);
@@ -140,12 +153,14 @@ TEST(Latex, AblationsSayWhichSamplesDiffer) {
     EXPECT_NE(Sample().table("ablation-cornell").find("on the same samples. "), std::string::npos);
     Sample sample;
     sample.study.ablations[0].stages[0].set = {{"path.max-depth", "1", ""}};
-    EXPECT_NE(sample.table("ablation-cornell").find("on the same samples; not so best\\_of without the limit, traced"), std::string::npos);
+    EXPECT_NE(sample.table("ablation-cornell").find("on the same samples; not so best\\_of without the limit, traced"),
+              std::string::npos);
 }
 
 TEST(Latex, EscapesWhatMeansSomething) {
     EXPECT_EQ(escapedLatex("a&b%c$d#e_f{g}h~i^j\\k<l>\nm"),
-              "a\\&b\\%c\\$d\\#e\\_f\\{g\\}h\\textasciitilde{}i\\textasciicircum{}j\\textbackslash{}k\\textless{}l\\textgreater{} m");
+              "a\\&b\\%c\\$d\\#e\\_f\\{g\\}h\\textasciitilde{}i\\textasciicircum{}j\\textbackslash{}k\\textless{}"
+              "l\\textgreater{} m");
 }
 
 /// Seed by seed: b has half the error at twice the time, so best_of's error is b's at 2 spp and twice the time.
@@ -178,7 +193,8 @@ TEST(Times, EqualErrorIsFoundOnACurveThatTurnsBack) {
     for (const int seed : sample.study.seeds)
         for (size_t method = 0; method < 2; ++method) sample.add(0, 4, seed, method);
     for (StudyRow& row : sample.records.rows)
-        if (row.scene == 0 && row.method == 1 && row.spp == 4) row.metrics["mse"] = 1.1;  // 2.01 at 1 spp and 1.005 at 2
+        if (row.scene == 0 && row.method == 1 && row.spp == 4)
+            row.metrics["mse"] = 1.1;  // 2.01 at 1 spp and 1.005 at 2
     const StudyTimes times = summarizeTimes(sample.study, sample.plan, sample.records);
     const auto found = std::find_if(times.pairs.begin(), times.pairs.end(), [](const StudyEqual& equal) {
         return equal.scene == 0 && equal.spp == 1 && equal.metric == "mse";

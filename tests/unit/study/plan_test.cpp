@@ -9,9 +9,7 @@
 namespace lumi::test {
 namespace {
 
-Study parse(const std::string& members) {
-    return parseStudy("{\"version\": 1, " + members + "}", "t.json", "");
-}
+Study parse(const std::string& members) { return parseStudy("{\"version\": 1, " + members + "}", "t.json", ""); }
 
 std::vector<std::string> ids(const StudyPlan& plan) {
     std::vector<std::string> all;
@@ -22,9 +20,9 @@ std::vector<std::string> ids(const StudyPlan& plan) {
 TEST(Plan, GoesSceneBySceneThenSamplesThenSeeds) {
     const StudyPlan plan = planStudy(parse(R"("scenes": ["cornell", "room"], "spp": [4, 1], "seeds": [2, 1],
         "entries": [{"module": "none"}])"));
-    EXPECT_EQ(ids(plan), (std::vector<std::string>{"cornell-spp1-seed2-a", "cornell-spp1-seed1-a", "cornell-spp4-seed2-a",
-                                                   "cornell-spp4-seed1-a", "room-spp1-seed2-a", "room-spp1-seed1-a",
-                                                   "room-spp4-seed2-a", "room-spp4-seed1-a"}));
+    EXPECT_EQ(ids(plan), (std::vector<std::string>{"cornell-spp1-seed2-a", "cornell-spp1-seed1-a",
+                                                   "cornell-spp4-seed2-a", "cornell-spp4-seed1-a", "room-spp1-seed2-a",
+                                                   "room-spp1-seed1-a", "room-spp4-seed2-a", "room-spp4-seed1-a"}));
 }
 
 /// Screen-space methods of one frame see identical samples; another sampler, or another wish for the camera's offsets,
@@ -43,7 +41,8 @@ TEST(Plan, MethodsShareSamplesWhereTheyCan) {
 }
 
 TEST(Plan, ASweepIsEveryCombination) {
-    const Study study = parse(R"("scenes": ["cornell"], "entries": [{"name": "a", "module": "accumulate"}, {"module": "none"}],
+    const Study study =
+        parse(R"("scenes": ["cornell"], "entries": [{"name": "a", "module": "accumulate"}, {"module": "none"}],
         "sweep": {"axes": {"max-samples": [1, 2], "path.max-depth": [3, 4]}, "entries": ["a"]})");
     const StudyPlan plan = planStudy(study);
     ASSERT_EQ(plan.methods.size(), 5u);
@@ -58,7 +57,8 @@ TEST(Plan, ASweepIsEveryCombination) {
 }
 
 TEST(Plan, TuningComesBeforeWhatItTunes) {
-    const StudyPlan plan = planStudy(parse(R"("scenes": ["cornell"], "frames": {"range": [0, 4]}, "tuning": {"frame": 1},
+    const StudyPlan plan =
+        planStudy(parse(R"("scenes": ["cornell"], "frames": {"range": [0, 4]}, "tuning": {"frame": 1},
         "entries": [{"name": "a", "module": "accumulate", "tune": {"max-samples": [1, 2]}}])"));
     ASSERT_EQ(plan.jobs.size(), 2u);
     EXPECT_EQ(plan.jobs[0].kind, StudyJob::Kind::Tune);
@@ -68,7 +68,8 @@ TEST(Plan, TuningComesBeforeWhatItTunes) {
 
 /// A stage that is off stays off, whatever tuning chose; where it changes no samples it shares the whole method's.
 TEST(Plan, AblationsAreTheEntryWithoutEachStage) {
-    const StudyPlan plan = planStudy(parse(R"("scenes": ["cornell"], "frames": {"range": [0, 4]}, "tuning": {"frame": 1},
+    const StudyPlan plan =
+        planStudy(parse(R"("scenes": ["cornell"], "frames": {"range": [0, 4]}, "tuning": {"frame": 1},
         "entries": [{"name": "a", "module": "accumulate", "set": {"limit": true}, "tune": {"max-samples": [1, 2]}}, {"module": "none"}],
         "ablations": [{"entry": "a", "stages": [{"name": "mean", "set": {"max-samples": 1}}, {"name": "depth", "set": {"path.max-depth": 2}}]}])"));
     ASSERT_EQ(plan.methods.size(), 4u);
@@ -94,7 +95,8 @@ TEST(Plan, AnEntryMayHaveSampleCountsOfItsOwn) {
 /// What changes a job's result changes its definition, and nothing else does.
 TEST(Plan, DefinitionsHoldWhatResultsDependOn) {
     const auto definition = [](const std::string& member, const std::string& set = "") {
-        return planStudy(parse("\"scenes\": [\"cornell\"], \"entries\": [{\"module\": \"none\", \"set\": {" + set + "}}], " + member))
+        return planStudy(parse("\"scenes\": [\"cornell\"], \"entries\": [{\"module\": \"none\", \"set\": {" + set +
+                               "}}], " + member))
             .jobs.at(0)
             .definition;
     };
@@ -103,12 +105,13 @@ TEST(Plan, DefinitionsHoldWhatResultsDependOn) {
     EXPECT_EQ(plain, definition("\"figures\": [{\"name\": \"f\", \"crops\": [{\"box\": [0, 0, 1, 1]}]}]"));
     EXPECT_EQ(plain, definition("\"pictures\": {\"error-map\": \"mse\"}"));
     std::set<std::string> all{plain};
-    for (const char* member : {"\"size\": [8, 8]", "\"seeds\": [3]", "\"spp\": [2]", "\"reference\": {\"spp\": 64}",
-                               "\"metrics\": [\"mse\"]", "\"set\": {\"path.max-depth\": 2}",
-                               "\"reference\": {\"set\": {\"path.max-depth\": 2}}", "\"frames\": {\"range\": [0, 3]}",
-                               "\"frames\": {\"range\": [0, 3], \"still\": true}", "\"frames\": {\"range\": [0, 3], \"fps\": 24}", "\"metric-settings\": {\"relmse-epsilon\": 0.01}",
-                               "\"metric-settings\": {\"hdr-flip-exposures\": [0, 2]}",
-                               "\"frames\": {\"range\": [0, 3], \"step\": {\"frame\": 1, \"set\": {\"light.lamp.power\": 2}}}"})
+    for (const char* member :
+         {"\"size\": [8, 8]", "\"seeds\": [3]", "\"spp\": [2]", "\"reference\": {\"spp\": 64}",
+          "\"metrics\": [\"mse\"]", "\"set\": {\"path.max-depth\": 2}",
+          "\"reference\": {\"set\": {\"path.max-depth\": 2}}", "\"frames\": {\"range\": [0, 3]}",
+          "\"frames\": {\"range\": [0, 3], \"still\": true}", "\"frames\": {\"range\": [0, 3], \"fps\": 24}",
+          "\"metric-settings\": {\"relmse-epsilon\": 0.01}", "\"metric-settings\": {\"hdr-flip-exposures\": [0, 2]}",
+          "\"frames\": {\"range\": [0, 3], \"step\": {\"frame\": 1, \"set\": {\"light.lamp.power\": 2}}}"})
         EXPECT_TRUE(all.insert(definition(member)).second) << member;
     EXPECT_TRUE(all.insert(definition("\"title\": \"a\"", "\"component\": \"direct\"")).second);
     EXPECT_TRUE(all.insert(definition("\"title\": \"a\"", "\"path.clamp\": true")).second);
@@ -117,7 +120,8 @@ TEST(Plan, DefinitionsHoldWhatResultsDependOn) {
 TEST(Plan, ReferencesFollowWhatDefinesTheImage) {
     for (const char* id : {"material.floor.roughness", "light.lamp.power", "path.max-depth", "camera.aperture", "time"})
         EXPECT_TRUE(definesImage(id)) << id;
-    for (const char* id : {"sampler.kind", "path.clamp", "path.regularize", "path.strategy", "camera.jitter", "render.spp"})
+    for (const char* id :
+         {"sampler.kind", "path.clamp", "path.regularize", "path.strategy", "camera.jitter", "render.spp"})
         EXPECT_FALSE(definesImage(id)) << id;
 }
 

@@ -17,8 +17,10 @@ namespace {
 
 /// Records of two methods on two scenes with three seeds, made up: "b" is worse by one everywhere.
 struct Sample {
-    Study study = parseStudy(R"({"version": 1, "scenes": ["cornell", "room"], "spp": [1, 4, 16], "seeds": [1, 2, 3], "metrics": ["mse", "ssim"],
-        "entries": [{"name": "a", "module": "none"}, {"name": "b", "module": "none"}]})", "t.json", "");
+    Study study = parseStudy(
+        R"({"version": 1, "scenes": ["cornell", "room"], "spp": [1, 4, 16], "seeds": [1, 2, 3], "metrics": ["mse", "ssim"],
+        "entries": [{"name": "a", "module": "none"}, {"name": "b", "module": "none"}]})",
+        "t.json", "");
     StudyPlan plan;
     StudyRecords records;
 };
@@ -64,7 +66,8 @@ TEST(Results, SummariesAreMeansOverSeedsWithRanksAndSlopes) {
     for (const StudyRanking& ranking : all.rankings) {
         EXPECT_EQ(ranking.places.front().method, 0u) << ranking.metric;
         EXPECT_TRUE(ranking.places.front().rank.certain()) << ranking.metric;
-        EXPECT_NEAR(std::abs(ranking.places.back().toBest.mean), (ranking.metric == "mse" ? 1.0 : 0.1) / ranking.spp, 1e-12);
+        EXPECT_NEAR(std::abs(ranking.places.back().toBest.mean), (ranking.metric == "mse" ? 1.0 : 0.1) / ranking.spp,
+                    1e-12);
     }
     EXPECT_EQ(all.rankings.size(), 3u * 3 * 2) << "two scenes and all together, three sample counts, two metrics";
     for (const StudySlope& slope : all.slopes) EXPECT_NEAR(slope.slope.mean, -1, 1e-9);
@@ -104,12 +107,14 @@ void writeColour(const std::filesystem::path& path, const Image& image) {
     writeExr(path, layers);
 }
 
-/// Four seeds of an image that is too bright by 0.2, with noise of variance 0.01; in one of them a pixel is NaN. That pixel
-/// counts in none, or it would look like one without error.
+/// Four seeds of an image that is too bright by 0.2, with noise of variance 0.01; in one of them a pixel is NaN. That
+/// pixel counts in none, or it would look like one without error.
 TEST(Results, BiasAndVarianceLeaveOutPixelsThatAreNotFinite) {
     TemporaryFolder folder;
     const Extent2 extent{48, 32};
-    const Study study = parseStudy(R"({"version": 1, "scenes": ["cornell"], "seeds": [1, 2, 3, 4], "metrics": ["mse"], "entries": [{"module": "none"}]})", "t.json", "");
+    const Study study = parseStudy(
+        R"({"version": 1, "scenes": ["cornell"], "seeds": [1, 2, 3, 4], "metrics": ["mse"], "entries": [{"module": "none"}]})",
+        "t.json", "");
     StudyRecords records;
     records.references.push_back({0, 0, "r.exr", 0, {{"mse", 0}}, {}, 0, {}});
     Image reference(extent, 3);
@@ -118,13 +123,15 @@ TEST(Results, BiasAndVarianceLeaveOutPixelsThatAreNotFinite) {
     uint64_t drawn = 0;
     for (int seed = 1; seed <= 4; ++seed) {
         Image image = reference;
-        for (size_t i = 0; i < image.size(); ++i) image.data()[i] += 0.2f + 0.1f * (mixBits(drawn++) & 1 ? 1.0f : -1.0f);
+        for (size_t i = 0; i < image.size(); ++i)
+            image.data()[i] += 0.2f + 0.1f * (mixBits(drawn++) & 1 ? 1.0f : -1.0f);
         // Pixels with a large error, and NaN in one channel of one seed.
         for (int channel = 0; channel < 3; ++channel) image.at(channel, 5, 5) = 100;
         if (seed == 2) image.at(1, 5, 5) = NAN;
         if (seed == 3) image.at(0, 7, 7) = INFINITY;
         StudyRow row;
-        row.frame = 0, row.seed = seed, row.image = folder / (std::to_string(seed) + ".exr"), row.reference = folder / "r.exr";
+        row.frame = 0, row.seed = seed, row.image = folder / (std::to_string(seed) + ".exr"),
+        row.reference = folder / "r.exr";
         row.nonFinitePixels = seed == 2 || seed == 3;
         writeColour(row.image, image);
         records.rows.push_back(row);
@@ -150,7 +157,8 @@ TEST(Results, BiasAndVarianceLeaveOutPixelsThatAreNotFinite) {
 TEST(Results, AblationsArePairedDifferences) {
     const Study study = parseStudy(R"({"version": 1, "scenes": ["cornell"], "seeds": [1, 2, 3], "metrics": ["mse"],
         "entries": [{"name": "a", "module": "accumulate"}, {"name": "b", "module": "none"}],
-        "ablations": [{"entry": "a", "stages": [{"name": "limit", "set": {"limit": true}}]}]})", "t.json", "");
+        "ablations": [{"entry": "a", "stages": [{"name": "limit", "set": {"limit": true}}]}]})",
+                                   "t.json", "");
     const StudyPlan plan = planStudy(study);
     ASSERT_EQ(plan.methods.size(), 3u);
     StudyRecords records;
@@ -171,13 +179,16 @@ TEST(Results, AblationsArePairedDifferences) {
     EXPECT_EQ(all.rankings[0].places.size(), 2u);
 }
 
-/// Claims are judged by paired differences to the bound; "a" has about half the error of "b", whatever the sample count.
+/// Claims are judged by paired differences to the bound; "a" has about half the error of "b", whatever the sample
+/// count.
 TEST(Results, ClaimsHoldOrNotOrNobodyKnows) {
     Sample s = sample();
     for (StudyRow& row : s.records.rows) row.frame = -1;
-    const auto claim = [&](const std::string& entry, const std::string& metric, const std::vector<std::string>& against, double bound, bool atLeast = false) {
+    const auto claim = [&](const std::string& entry, const std::string& metric, const std::vector<std::string>& against,
+                           double bound, bool atLeast = false) {
         StudyCheck check;
-        check.entry = entry, check.metric = metric, check.against = against, check.bound = bound, check.atLeast = atLeast;
+        check.entry = entry, check.metric = metric, check.against = against, check.bound = bound,
+        check.atLeast = atLeast;
         s.study.checks = {check};
         return checkClaims(s.study, s.plan, s.records, {});
     };
@@ -194,7 +205,8 @@ TEST(Results, ClaimsHoldOrNotOrNobodyKnows) {
     EXPECT_EQ(claim("a", "mse", {b}, 0.4)[0].verdict, Verdict::Fails);
     EXPECT_EQ(claim("a", "mse", {b}, 0.5)[0].verdict, Verdict::FailsWithinNoise) << "0.005, 0.010 and 0.015 beyond";
     EXPECT_FALSE(claim("a", "mse", {b}, 0.5)[0].asClaimed());
-    EXPECT_EQ(claim("a", "mse", {b}, 1.02 / 2.02 + 1e-9)[0].verdict, Verdict::WithinNoise) << "right at the bound nothing tells";
+    EXPECT_EQ(claim("a", "mse", {b}, 1.02 / 2.02 + 1e-9)[0].verdict, Verdict::WithinNoise)
+        << "right at the bound nothing tells";
     EXPECT_EQ(claim("a", "ssim", {b}, 1, true)[0].verdict, Verdict::Holds);
     EXPECT_EQ(claim(b, "ssim", {"a"}, 1, true)[0].verdict, Verdict::Fails);
     EXPECT_EQ(claim("a", "mse", {}, 1.1)[0].verdict, Verdict::Holds) << "a bound of its own";
@@ -203,7 +215,9 @@ TEST(Results, ClaimsHoldOrNotOrNobodyKnows) {
     EXPECT_EQ(checkClaims(s.study, s.plan, s.records, {}).size(), 3u);
     s.records.rows[0].corrected.clear(), s.records.rows[0].metrics["mse"] = NAN;
     results = claim("a", "mse", {b}, 0.6);
-    EXPECT_EQ(std::count_if(results.begin(), results.end(), [](const auto& result) { return result.verdict == Verdict::Unknown; }), 1)
+    EXPECT_EQ(std::count_if(results.begin(), results.end(),
+                            [](const auto& result) { return result.verdict == Verdict::Unknown; }),
+              1)
         << "the seeds that are left do not speak for all";
     for (StudyRow& row : s.records.rows) row.corrected.clear(), row.metrics["mse"] = NAN;
     EXPECT_EQ(claim("a", "mse", {b}, 2)[0].verdict, Verdict::Unknown) << "no value holds nothing";
@@ -220,9 +234,11 @@ TEST(Results, AClaimAgainstWhatDidNotRunIsUnknown) {
     const std::vector<StudyCheckResult> results = checkClaims(s.study, s.plan, s.records, {});
     ASSERT_EQ(results.size(), 2u * 3);
     for (const StudyCheckResult& result : results)
-        EXPECT_EQ(result.verdict, result.spp == 4 ? StudyCheckResult::Verdict::Unknown : StudyCheckResult::Verdict::Holds);
+        EXPECT_EQ(result.verdict,
+                  result.spp == 4 ? StudyCheckResult::Verdict::Unknown : StudyCheckResult::Verdict::Holds);
     s.study.checks[0].metric = "flip";
-    for (const StudyCheckResult& result : checkClaims(s.study, s.plan, s.records, {})) EXPECT_FALSE(result.asClaimed()) << "nothing was judged";
+    for (const StudyCheckResult& result : checkClaims(s.study, s.plan, s.records, {}))
+        EXPECT_FALSE(result.asClaimed()) << "nothing was judged";
 }
 
 TEST(Results, JsonHoldsNoNumberThatJsonCannot) {

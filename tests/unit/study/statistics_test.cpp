@@ -14,12 +14,15 @@ namespace {
 using Of = StudyStatistic::Of;
 
 Study parse(const std::string& members) {
-    return parseStudy(R"({"version": 1, "scenes": ["cornell", "room"], "seeds": [1, 2, 3], "metrics": ["mse"], )" + members + "}", "s.json", "");
+    return parseStudy(
+        R"({"version": 1, "scenes": ["cornell", "room"], "seeds": [1, 2, 3], "metrics": ["mse"], )" + members + "}",
+        "s.json", "");
 }
 
 double reducedTo(Of of, double value, const std::vector<float>& pixels, const std::string& channel = "") {
     Image image({static_cast<int>(pixels.size()), 1}, 2);
-    for (size_t i = 0; i < pixels.size(); ++i) image.at(0, static_cast<int>(i), 0) = pixels[i], image.at(1, static_cast<int>(i), 0) = 2 * pixels[i];
+    for (size_t i = 0; i < pixels.size(); ++i)
+        image.at(0, static_cast<int>(i), 0) = pixels[i], image.at(1, static_cast<int>(i), 0) = 2 * pixels[i];
     StudyStatistic statistic;
     statistic.tap = "t", statistic.of = of, statistic.value = value, statistic.channel = channel;
     return reduced(statistic, image, "XY");
@@ -42,11 +45,14 @@ TEST(Statistics, ReduceABufferOverItsFinitePixels) {
 
 TEST(Statistics, RefuseWhatMeansNothing) {
     const auto refused = [](const std::string& statistics, const std::initializer_list<std::string>& parts) {
-        expectError(ErrorKind::BadInput, [&] { parse(R"("entries": [{"module": "none"}], "statistics": [)" + statistics + "]"); }, parts);
+        expectError(
+            ErrorKind::BadInput,
+            [&] { parse(R"("entries": [{"module": "none"}], "statistics": [)" + statistics + "]"); }, parts);
     };
     refused(R"({"name": "x"})", {"one of \"tap\""});
     refused(R"({"name": "x", "tap": "a", "of": "mean", "rays": "all"})", {"one of \"tap\""});
-    refused(R"({"name": "x", "tap": "sampleCuont", "of": "mean"})", {"unknown buffer of the entries' modules \"sampleCuont\""});
+    refused(R"({"name": "x", "tap": "sampleCuont", "of": "mean"})",
+            {"unknown buffer of the entries' modules \"sampleCuont\""});
     refused(R"({"name": "mse", "rays": "all"})", {"\"mse\" is the name of something else"});
     refused(R"({"name": "frame_ms", "rays": "all"})", {"is the name of something else"});
     refused(R"({"name": "x", "over": "y", "under": "y"})", {"unknown over \"y\""});
@@ -76,9 +82,12 @@ struct Timed {
                     records.rows.push_back(row);
                 }
     }
-    std::vector<StudyCheckResult> claim(const std::string& entry, const std::string& metric, const std::vector<std::string>& against, const std::string& atEqual, double bound) {
+    std::vector<StudyCheckResult> claim(const std::string& entry, const std::string& metric,
+                                        const std::vector<std::string>& against, const std::string& atEqual,
+                                        double bound) {
         StudyCheck check;
-        check.entry = entry, check.metric = metric, check.against = against, check.atEqual = atEqual, check.bound = bound;
+        check.entry = entry, check.metric = metric, check.against = against, check.atEqual = atEqual,
+        check.bound = bound;
         study.checks = {check};
         return checkClaims(study, plan, records, summarizeTimes(study, plan, records));
     }
@@ -96,19 +105,23 @@ TEST(Statistics, ClaimsAtEqualTimeTakeTheOthersAsOneCurve) {
         EXPECT_EQ(timed.study.checks[0].timed(), std::string(cost) == "frame_ms");
     }
     EXPECT_EQ(timed.claim("m", "mse", {"o1", "o2", "o3"}, "frame_ms", 0.3)[0].verdict, Verdict::Fails);
-    EXPECT_EQ(timed.claim("m", "frame_ms", {"o1", "o2"}, "mse", 1)[0].verdict, Verdict::Unknown) << "far out of the curve";
+    EXPECT_EQ(timed.claim("m", "frame_ms", {"o1", "o2"}, "mse", 1)[0].verdict, Verdict::Unknown)
+        << "far out of the curve";
     EXPECT_EQ(timed.claim("o1", "ns_per_ray", {"m"}, "", 0.9)[0].verdict, Verdict::Holds);
     EXPECT_EQ(timed.claim("m", "ns_per_ray", {"o1"}, "", 1)[0].verdict, Verdict::Fails);
     // Of a ray's 11 to 13 ns half is tracing, where the other's are all.
-    for (StudyTime& time : timed.records.times) time.stagesMs = {{"shading", time.runMs / (time.method == 0 ? 2 : 1)}, {"rest", 1}};
-    EXPECT_EQ(timed.claim("m", "tracing_ns_per_ray", {"o1"}, "", 1)[0].verdict, Verdict::Unknown) << "no stage is named";
+    for (StudyTime& time : timed.records.times)
+        time.stagesMs = {{"shading", time.runMs / (time.method == 0 ? 2 : 1)}, {"rest", 1}};
+    EXPECT_EQ(timed.claim("m", "tracing_ns_per_ray", {"o1"}, "", 1)[0].verdict, Verdict::Unknown)
+        << "no stage is named";
     timed.study.tracingStages = {"shading"};
     EXPECT_EQ(timed.claim("m", "tracing_ns_per_ray", {"o1"}, "", 0.7)[0].verdict, Verdict::Holds);
     EXPECT_EQ(timed.claim("m", "tracing_ns_per_ray", {"o1"}, "", 0.5)[0].verdict, Verdict::Fails);
     StudyCheck here = timed.study.checks[0];
     here.scene = "room";
     timed.study.checks = {here};
-    const auto results = checkClaims(timed.study, timed.plan, timed.records, summarizeTimes(timed.study, timed.plan, timed.records));
+    const auto results =
+        checkClaims(timed.study, timed.plan, timed.records, summarizeTimes(timed.study, timed.plan, timed.records));
     ASSERT_EQ(results.size(), 1u);
     EXPECT_EQ(results[0].scene, 1u);
 }
@@ -124,9 +137,11 @@ TEST(Statistics, PairsTakeSeveralEntriesAsOneCurve) {
 
 /// Two methods at two sample counts each, whose costs lie between one another's: one curve by cost, which bends.
 TEST(Times, SeveralMethodsAreOneCurveByWhatTheyCost) {
-    const Study study = parseStudy(R"({"version": 1, "scenes": ["cornell"], "seeds": [1, 2], "spp": [1, 2], "metrics": ["mse"],
+    const Study study =
+        parseStudy(R"({"version": 1, "scenes": ["cornell"], "seeds": [1, 2], "spp": [1, 2], "metrics": ["mse"],
         "entries": [{"name": "m", "module": "none"}, {"name": "a", "module": "none"}, {"name": "b", "module": "none"}],
-        "pairs": [{"entry": "m", "against": ["a", "b"]}]})", "s.json", "");
+        "pairs": [{"entry": "m", "against": ["a", "b"]}]})",
+                   "s.json", "");
     const StudyPlan plan = planStudy(study);
     StudyRecords records;
     const double ms[3][2] = {{12, 12}, {8, 32}, {16, 64}}, mse[3][2] = {{2.5, 2.5}, {8, 2}, {3, 1}};

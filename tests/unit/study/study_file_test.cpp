@@ -7,7 +7,9 @@
 namespace lumi::test {
 namespace {
 
-Study parse(const std::string& text, const std::string& preset = "") { return parseStudy(text, "folder/t.json", preset); }
+Study parse(const std::string& text, const std::string& preset = "") {
+    return parseStudy(text, "folder/t.json", preset);
+}
 
 /// A study whose one interesting member is `member`.
 std::string withMember(const std::string& member, const std::string& entry = R"({"module": "none"})") {
@@ -15,7 +17,8 @@ std::string withMember(const std::string& member, const std::string& entry = R"(
 }
 
 void refused(const std::string& text, const std::initializer_list<std::string>& parts) {
-    expectError(ErrorKind::BadInput, [&] { parse(text); }, parts);
+    expectError(
+        ErrorKind::BadInput, [&] { parse(text); }, parts);
 }
 
 TEST(StudyFile, TheLeastStudyHasDefaults) {
@@ -114,7 +117,8 @@ TEST(StudyFile, ErrorsNamePlaceAndNearestKey) {
     refused(withMember("\"frames\": {\"range\": [4, 4]}"), {"4"});
     refused(withMember("\"reference\": {\"spp\": 48}"), {"multiple of 32"});
     refused(withMember("\"scenes\": []"), {"stands twice"});
-    refused(withMember("\"pairs\": [{\"entry\": \"nonne\", \"against\": \"none\"}]"), {"unknown entry \"nonne\"", "\"none\""});
+    refused(withMember("\"pairs\": [{\"entry\": \"nonne\", \"against\": \"none\"}]"),
+            {"unknown entry \"nonne\"", "\"none\""});
     refused(withMember("\"presets\": {\"quick\": {\"title\": \"x\"}}"), {"a preset cannot change \"title\""});
     refused(withMember("\"presets\": {\"quick\": {\"spp\": 0}}"), {"\"spp\" is 0"});
 }
@@ -129,38 +133,58 @@ TEST(StudyFile, ModuleParametersAreCheckedAgainstTheCatalogue) {
     refused(entry(R"({"module": "none"}, {"module": "none"})"), {"two entries are called \"none\""});
     refused(withMember(R"("sweep": {"axes": {"component": ["direct", "indrect"]}})"), {"indrect", ":3:"});
     refused(withMember(R"("sweep": {"axes": {}})"), {"one or two axes"});
-    refused(withMember(R"("tuning": {"frame": 0}, "frames": {"range": [0, 2], "measure": [0]})"), {"a frame that is not measured"});
+    refused(withMember(R"("tuning": {"frame": 0}, "frames": {"range": [0, 2], "measure": [0]})"),
+            {"a frame that is not measured"});
 }
 
 TEST(StudyFile, StepsAblationsAndFiguresAreChecked) {
     const std::string entries = R"({"module": "accumulate"}, {"module": "none"})";
     const auto member = [&](const std::string& text) { return withMember(text, entries); };
     refused(member(R"("metrics": ["lag"])"), {":3:13", "\"step\"", "\"still\""});
-    refused(member(R"("frames": {"range": [0, 9], "step": {"frame": 0, "set": {"light.a.power": 1}}})"), {"\"frame\" is 0", "from 1 to 8"});
-    refused(member(R"("frames": {"range": [0, 9], "step": {"frame": 2, "set": {"path.clamp": true}}})"), {":3:", "path.clamp", "converged image"});
-    const auto stage = [&](const std::string& text) { return member("\"ablations\": [{\"entry\": \"accumulate\", \"stages\": [" + text + "]}]"); };
+    refused(member(R"("frames": {"range": [0, 9], "step": {"frame": 0, "set": {"light.a.power": 1}}})"),
+            {"\"frame\" is 0", "from 1 to 8"});
+    refused(member(R"("frames": {"range": [0, 9], "step": {"frame": 2, "set": {"path.clamp": true}}})"),
+            {":3:", "path.clamp", "converged image"});
+    const auto stage = [&](const std::string& text) {
+        return member("\"ablations\": [{\"entry\": \"accumulate\", \"stages\": [" + text + "]}]");
+    };
     refused(stage(R"({"name": "a", "set": {"limitt": true}})"), {"limitt", "\"limit\"", ":3:"});
     refused(stage(R"({"name": "a", "set": {}})"), {"what switches the stage off"});
-    refused(stage(R"({"name": "a", "set": {"limit": true}}, {"name": "a", "set": {"limit": true}})"), {"two stages are called \"a\""});
+    refused(stage(R"({"name": "a", "set": {"limit": true}}, {"name": "a", "set": {"limit": true}})"),
+            {"two stages are called \"a\""});
     refused(member(R"("ablations": [{"entry": "acumulate", "stages": []}])"), {"unknown entry", "\"accumulate\""});
-    refused(member(R"("sweep": {"axes": {"path.max-depth": [1]}}, "ablations": [{"entry": "none", "stages": [{"name": "a", "set": {"path.clamp": true}}]}])"),
-            {"an entry that is not swept"});
-    const auto figure = [&](const std::string& text) { return member("\"figures\": [{\"name\": \"f\", " + text + "}]"); };
+    refused(
+        member(
+            R"("sweep": {"axes": {"path.max-depth": [1]}}, "ablations": [{"entry": "none", "stages": [{"name": "a", "set": {"path.clamp": true}}]}])"),
+        {"an entry that is not swept"});
+    const auto figure = [&](const std::string& text) {
+        return member("\"figures\": [{\"name\": \"f\", " + text + "}]");
+    };
     refused(figure(R"("crops": [{"box": [0.9, 0, 0.2, 0.1]}])"), {"\"box\"", "shares of the picture", ":3:"});
     refused(figure(R"("crops": [{"box": [0, 0, 1]}])"), {"\"box\""});
     refused(figure(R"("crops": [])"), {"one to six crops"});
-    refused(figure(R"("crops": [{"box": [0, 0, 1, 1]}], "scene": "cornel")"), {"unknown scene \"cornel\"", "\"cornell\""});
+    refused(figure(R"("crops": [{"box": [0, 0, 1, 1]}], "scene": "cornel")"),
+            {"unknown scene \"cornel\"", "\"cornell\""});
     refused(figure(R"("crops": [{"box": [0, 0, 1, 1]}], "metric": "psnr2")"), {"unknown metric with a map"});
     refused(figure(R"("crops": [{"box": [0, 0, 1, 1]}], "frame": 3)"), {"\"frame\""});
     refused(member(R"("checks": [{"entry": "none", "metric": "rmse"}])"), {"either \"at-most\" or \"at-least\""});
-    refused(member(R"("checks": [{"entry": "none", "metric": "ssim", "at-least": 1}])"), {"unknown metric of the study \"ssim\""});
-    refused(member(R"("checks": [{"entry": "none", "metric": "rmse", "at-most": 1, "against": ["nonne"]}])"), {"unknown entry", "\"none\""});
+    refused(member(R"("checks": [{"entry": "none", "metric": "ssim", "at-least": 1}])"),
+            {"unknown metric of the study \"ssim\""});
+    refused(member(R"("checks": [{"entry": "none", "metric": "rmse", "at-most": 1, "against": ["nonne"]}])"),
+            {"unknown entry", "\"none\""});
     const std::string swept = R"("sweep": {"axes": {"limit": [true, false]}, "entries": ["accumulate"]}, )";
-    refused(member(swept + R"("checks": [{"entry": "accumulate", "metric": "rmse", "at-most": 1}])"), {"\"entry\"", "an entry that is not swept", ":3:"});
-    refused(member(swept + R"("checks": [{"entry": "none", "metric": "rmse", "against": ["accumulate"], "at-most": 1}])"), {"\"against\"", "an entry that is not swept"});
+    refused(member(swept + R"("checks": [{"entry": "accumulate", "metric": "rmse", "at-most": 1}])"),
+            {"\"entry\"", "an entry that is not swept", ":3:"});
+    refused(
+        member(swept + R"("checks": [{"entry": "none", "metric": "rmse", "against": ["accumulate"], "at-most": 1}])"),
+        {"\"against\"", "an entry that is not swept"});
     refused(member(R"("metric-settings": {"relmse-epsilon": 0})"), {"\"relmse-epsilon\" is 0"});
-    refused(member(R"("metric-settings": {"hdr-flip-exposures": [3, -2]})"), {"\"hdr-flip-exposures\"", "[start, stop]"});
-    refused(member(R"("figures": [{"name": "a b", "crops": [{"box": [0,0,1,1]}]}, {"name": "a-b", "crops": [{"box": [0,0,1,1]}]}])"), {"two figures are called"});
+    refused(member(R"("metric-settings": {"hdr-flip-exposures": [3, -2]})"),
+            {"\"hdr-flip-exposures\"", "[start, stop]"});
+    refused(
+        member(
+            R"("figures": [{"name": "a b", "crops": [{"box": [0,0,1,1]}]}, {"name": "a-b", "crops": [{"box": [0,0,1,1]}]}])"),
+        {"two figures are called"});
     std::string many = R"({"module": "none"})";
     for (int i = 0; i < 8; ++i) many += ", {\"name\": \"e" + std::to_string(i) + "\", \"module\": \"none\"}";
     const std::string strip = R"("figures": [{"name": "f", "crops": [{"box": [0,0,1,1]}])";
@@ -169,15 +193,19 @@ TEST(StudyFile, StepsAblationsAndFiguresAreChecked) {
 }
 
 TEST(StudyFile, ScenesHaveFilesOfTheirOwn) {
-    const auto scenes = [](const std::string& list) { return "{\"version\": 1, \"entries\": [{\"module\": \"none\"}], \"scenes\": [" + list + "]}"; };
-    refused(scenes(R"({"scene": "room", "name": "a b"}, {"scene": "room", "name": "a-b"})"), {"\"a b\" and \"a-b\"", "t.json:1:"});
+    const auto scenes = [](const std::string& list) {
+        return "{\"version\": 1, \"entries\": [{\"module\": \"none\"}], \"scenes\": [" + list + "]}";
+    };
+    refused(scenes(R"({"scene": "room", "name": "a b"}, {"scene": "room", "name": "a-b"})"),
+            {"\"a b\" and \"a-b\"", "t.json:1:"});
     refused(scenes(R"({"scene": "room", "name": "all scenes"})"), {"cannot be called \"all scenes\""});
     refused(scenes(R"({"scene": "room", "name": "all"})"), {"cannot be called \"all\""});
     EXPECT_EQ(parse(scenes(R"({"scene": "room", "name": "a b"}, {"scene": "room", "name": "a-c"})")).scenes.size(), 2u);
 }
 
-/// The shape of a paper's table: scenes with parameters, one of which may be missing, baselines that are tuned on a frame that
-/// is not measured, a fixed view's flicker, times of every phase at several budgets, claims, and stages switched off.
+/// The shape of a paper's table: scenes with parameters, one of which may be missing, baselines that are tuned on a
+/// frame that is not measured, a fixed view's flicker, times of every phase at several budgets, claims, and stages
+/// switched off.
 TEST(StudyFile, CarriesAPapersTablesAndFigures) {
     const Study table = parse(R"({"version": 1, "title": "Table", "paper": "Schied17",
       "scenes": ["atrium", {"scene": "assets:no/Sponza.gltf", "name": "sponza", "optional": true, "set": {"camera.select": "hall"}},
@@ -193,12 +221,14 @@ TEST(StudyFile, CarriesAPapersTablesAndFigures) {
       "ablations": [{"entry": "svgf", "stages": [{"name": "variance prefilter", "set": {"variance-prefilter": false}}]}],
       "pairs": [{"entry": "svgf", "against": "raw"}],
       "metrics": ["rmse", "ssim", "cpbd", "temporal_reprojected"],
-      "presets": {"quick": {"size": [480, 270], "reference": {"spp": 256}}, "paper": {"size": [1920, 1080], "reference": {"spp": 4096}}}})", "paper");
+      "presets": {"quick": {"size": [480, 270], "reference": {"spp": 256}}, "paper": {"size": [1920, 1080], "reference": {"spp": 4096}}}})",
+                              "paper");
     EXPECT_EQ(table.reference.spp, 4096);
     EXPECT_EQ(table.entries[1].spp, (std::vector<int>{1, 2, 4}));
     EXPECT_TRUE(table.scenes[1].optional);
     EXPECT_EQ(table.checks.size(), 3u);
-    const Study flicker = parse(R"({"version": 1, "scenes": ["atrium"], "frames": {"range": [0, 60], "still": true, "temporal": [1, 60], "mean-from": 20},
+    const Study flicker = parse(
+        R"({"version": 1, "scenes": ["atrium"], "frames": {"range": [0, 60], "still": true, "temporal": [1, 60], "mean-from": 20},
       "entries": [{"name": "svgf", "module": "svgf"}, {"name": "plain", "module": "svgf", "set": {"color-alpha": 1, "moments-alpha": 1}}],
       "checks": [{"entry": "svgf", "metric": "temporal", "against": ["plain"], "at-most": 0.2}], "metrics": ["temporal"]})");
     EXPECT_EQ(flicker.frames.temporalBegin, 1);

@@ -31,9 +31,8 @@ TEST(StudySchema, TakesWhatTheParserTakes) {
     TemporaryFolder folder;
     const std::string head = R"({"version": 1, "scenes": ["cornell"], "entries": [{"module": "none"}], )";
     std::vector<fs::path> bad;
-    for (const char* member :
-         {R"("seds": [1]})", R"("spp": 0})", R"("metrics": ["rsme"]})", R"("size": [16]})", R"("reference": {"spp": 48}})",
-          R"("presets": {"quick": {"title": "x"}}})"}) {
+    for (const char* member : {R"("seds": [1]})", R"("spp": 0})", R"("metrics": ["rsme"]})", R"("size": [16]})",
+                               R"("reference": {"spp": 48}})", R"("presets": {"quick": {"title": "x"}}})"}) {
         EXPECT_THROW(parseStudy(head + member, "t.json", ""), std::exception) << member;
         bad.push_back(folder / ("bad-" + std::to_string(bad.size()) + ".json"));
         writeFileAtomically(bad.back(), std::string_view(head + member));

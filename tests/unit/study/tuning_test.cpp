@@ -57,8 +57,13 @@ TEST(Tuning, HigherMayBeBetterEqualsKeepTheFirstAndNanIsNeverChosen) {
 }
 
 TEST(Tuning, AChoiceAtAnEndIsTold) {
-    const std::vector<StudyAxis> axes{{"sigma", {"0.5", "2", "8", "32"}, ""}, {"turned", {"3", "1", "2"}, ""}, {"two", {"1", "2"}, ""}, {"kind", {"a", "b", "c"}, ""}};
-    const auto ends = [&](const char* sigma, const char* turned) { return tunedToAnEnd(axes, {{"sigma", sigma}, {"turned", turned}, {"two", "1"}, {"kind", "a"}}); };
+    const std::vector<StudyAxis> axes{{"sigma", {"0.5", "2", "8", "32"}, ""},
+                                      {"turned", {"3", "1", "2"}, ""},
+                                      {"two", {"1", "2"}, ""},
+                                      {"kind", {"a", "b", "c"}, ""}};
+    const auto ends = [&](const char* sigma, const char* turned) {
+        return tunedToAnEnd(axes, {{"sigma", sigma}, {"turned", turned}, {"two", "1"}, {"kind", "a"}});
+    };
     EXPECT_EQ(ends("32", "2"), std::vector<std::string>{"sigma"});
     EXPECT_EQ(ends("8", "1"), std::vector<std::string>{"turned"});
     EXPECT_TRUE(ends("2", "2").empty());

@@ -1,4 +1,5 @@
-// Back faces of single-sided materials: gone for the camera, solid for every other ray. Blended ones: the same rays stop.
+// Back faces of single-sided materials: gone for the camera, solid for every other ray. Blended ones: the same rays
+// stop.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -127,9 +128,8 @@ TEST(BackFaces, AFrameLooksThroughACeilingFromAbove) {
         Tracer tracer;
         tracer.bind(tiny.pose());
         Signals signals;
-        EXPECT_TRUE(tracer.sample(frameOf(lookFrom(Vec3(0.1f, 6, 0.1f), Vec3(0), 20), {16, 16}, 1, plainPaths(1),
-                                          {Signal::Depth}),
-                                  signals));
+        EXPECT_TRUE(tracer.sample(
+            frameOf(lookFrom(Vec3(0.1f, 6, 0.1f), Vec3(0), 20), {16, 16}, 1, plainPaths(1), {Signal::Depth}), signals));
         return signals[Signal::Depth].at(0, 8, 8);
     };
     EXPECT_NEAR(depth(true), 4, 0.02);
@@ -164,7 +164,8 @@ TEST(Tracer, PathsGoOnFromTheirHits) {
     std::vector<Vec3> whole(count), continued(count);
     tracer.closestHits(rays, hits, {}, true, ids);
     EXPECT_EQ(tracer.counts().cameraRays, count);
-    const auto stopped = std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.point.instance == 2; });
+    const auto stopped =
+        std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.point.instance == 2; });
     EXPECT_GT(stopped, 50);
     // A ray alone stops where it stopped among the others.
     for (size_t i = 0; i < count; i += 7) {

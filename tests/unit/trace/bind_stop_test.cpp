@@ -42,11 +42,13 @@ bool meets(Tracer& tracer, const Vec3& from, const Vec3& direction) {
 int bindUntil(EmbreeScene& embree, const PosedScene& posed, int last) {
     std::stop_source source;
     std::atomic<int> calls{0};
-    expectError(ErrorKind::Interrupted, [&] {
-        embree.bind(posed, source.get_token(), [&](double) {
-            if (++calls >= last) source.request_stop();
-        });
-    }, {"interrupted"});
+    expectError(ErrorKind::Interrupted,
+                [&] {
+                    embree.bind(posed, source.get_token(), [&](double) {
+                        if (++calls >= last) source.request_stop();
+                    });
+                },
+                {"interrupted"});
     return calls;
 }
 
@@ -116,7 +118,8 @@ TEST(BindStop, WheneverItComesTheTracerGoesOn) {
             bound = false, ++stopped;
         }
         later.join();
-        EXPECT_EQ(meets(tracer, above, down), bound) << "the floor, an empty scene, or the balls, which alone are met here";
+        EXPECT_EQ(meets(tracer, above, down), bound)
+            << "the floor, an empty scene, or the balls, which alone are met here";
         tracer.bind(large);
         EXPECT_TRUE(meets(tracer, above, down));
     }
@@ -128,7 +131,11 @@ TEST(BindStop, PosesAreStoppedToo) {
     source.request_stop();
     const auto scene = manyTriangles()->scene;
     expectError(ErrorKind::Interrupted, [&] { poseScene(scene, {}, nullptr, source.get_token()); }, {"interrupted"});
-    expectError(ErrorKind::Interrupted, [&] { poseScene(scene, {1, 2, 1}, nullptr, source.get_token()); }, {"interrupted"});
+    expectError(ErrorKind::Interrupted,
+                [&] {
+                    poseScene(scene, {1, 2, 1}, nullptr, source.get_token());
+                },
+                {"interrupted"});
 }
 
 TEST(ManyInstances, TakeFewBytesEach) {
@@ -136,8 +143,7 @@ TEST(ManyInstances, TakeFewBytesEach) {
     TinyScene tiny;
     const auto box = std::make_shared<const Mesh>(boxMesh(Vec3(1)));
     const int grey = tiny.addMaterial(lambert(0.5f));
-    for (int i = 0; i < kCount; ++i)
-        tiny.add(box, grey, translation(Vec3(float(i % 200) * 2, 0, float(i / 200) * 2)));
+    for (int i = 0; i < kCount; ++i) tiny.add(box, grey, translation(Vec3(float(i % 200) * 2, 0, float(i / 200) * 2)));
     const auto posed = tiny.pose();
     for (const PosedInstance& instance : posed->instances) ASSERT_EQ(instance.motion, nullptr);
     EXPECT_LE(posed->byteCount() / kCount, 100u);

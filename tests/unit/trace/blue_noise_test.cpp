@@ -27,7 +27,8 @@ TEST(BlueNoise, TileHoldsEveryRankOnce) {
 }
 
 TEST(BlueNoise, TileHasHardlyAnyLowFrequencies) {
-    // Power of all waves up to an eighth of a cycle a pixel, against the mean power of white noise of the same variance.
+    // Power of all waves up to an eighth of a cycle a pixel, against the mean power of white noise of the same
+    // variance.
     double low = 0, variance = 0;
     int waves = 0;
     for (uint32_t i = 0; i < uint32_t(kSide) * kSide; ++i)
@@ -38,7 +39,8 @@ TEST(BlueNoise, TileHasHardlyAnyLowFrequencies) {
             std::complex<double> sum = 0;
             for (int y = 0; y < kSide; ++y)
                 for (int x = 0; x < kSide; ++x) {
-                    const double value = BlueNoiseTile::instance().at(static_cast<uint32_t>(x), static_cast<uint32_t>(y));
+                    const double value =
+                        BlueNoiseTile::instance().at(static_cast<uint32_t>(x), static_cast<uint32_t>(y));
                     sum += value * std::polar(1.0, 2 * 3.14159265358979 * (u * x + v * y) / kSide);
                 }
             low += std::norm(sum);

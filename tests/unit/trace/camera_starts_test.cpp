@@ -78,7 +78,8 @@ void expectSameTiles(const FrameSampling& sampling) {
 
 TEST(CameraStarts, ArePinholeRaysOfTheirPixels) {
     for (const SamplerKind sampler : {SamplerKind::Independent, SamplerKind::Halton, SamplerKind::Sobol})
-        for (const Jitter jitter : {Jitter::None, Jitter::PerFrame, Jitter::PerPixel}) expectSameTiles(samplingOf(sampler, jitter));
+        for (const Jitter jitter : {Jitter::None, Jitter::PerFrame, Jitter::PerPixel})
+            expectSameTiles(samplingOf(sampler, jitter));
 }
 
 TEST(CameraStarts, AreRaysOfLensesShuttersAndOrthographicCameras) {
@@ -108,7 +109,8 @@ TEST(CameraStarts, SameBytesOnEveryInstructionSet) {
         float x[kCount], y[kCount], z[kCount], spread[kCount];
     };
     float x[kCount], y[kCount];
-    for (uint32_t i = 0; i < kCount; ++i) x[i] = 97 * unitFloat(hashCombine(1, i)), y[i] = 41 * unitFloat(hashCombine(2, i));
+    for (uint32_t i = 0; i < kCount; ++i)
+        x[i] = 97 * unitFloat(hashCombine(1, i)), y[i] = 41 * unitFloat(hashCombine(2, i));
     const auto run = [&](const CameraKernels& kernels) {
         Directions d{};
         kernels.pinhole(view, x, y, kCount, d.x, d.y, d.z, d.spread);

@@ -100,8 +100,10 @@ TEST_F(ContractCheck, CountsPixels) {
         for (int x = 0; x < kExtent.width; ++x) surfaces += f.signals.ids(Signal::ObjectId).at(0, x, y) != 0;
     int rules = 0;
     for (const ContractFinding& finding : checkSignals(f.signals, s, tracer_)) {
-        const bool all = finding.rule.find("lies in") != std::string::npos || finding.rule.find("finite") != std::string::npos;
-        const bool some = finding.rule.find("unit") != std::string::npos || finding.rule.find("uniform") != std::string::npos;
+        const bool all =
+            finding.rule.find("lies in") != std::string::npos || finding.rule.find("finite") != std::string::npos;
+        const bool some =
+            finding.rule.find("unit") != std::string::npos || finding.rule.find("uniform") != std::string::npos;
         if (all || some) {
             EXPECT_EQ(finding.checked, all ? kExtent.area() : surfaces) << finding.rule;
             ++rules;
@@ -119,7 +121,8 @@ TEST_F(ContractCheck, BlueNoiseIsUniform) {
         s.path.sampler = SamplerKind::BlueNoise;
         Signals signals;
         ASSERT_TRUE(tracer_.sample(s, signals));
-        for (const ContractFinding& finding : checkSignals(signals, s, tracer_)) EXPECT_TRUE(finding.holds()) << finding.text();
+        for (const ContractFinding& finding : checkSignals(signals, s, tracer_))
+            EXPECT_TRUE(finding.holds()) << finding.text();
     }
 }
 

@@ -60,10 +60,8 @@ TEST(EnvironmentLight, DensityIntegratesToOneAndMatchesItsSamples) {
             ASSERT_GT(pdf, 0);
             ASSERT_NEAR(glm::length(direction), 1, 1e-5);
             // A sample on a cell's border may fall to either side.
-            if (i < 2000 && std::abs(light.pdf(direction) - pdf) > 1e-3f * pdf)
-                inverse.add(0);
-            else if (i < 2000)
-                inverse.add(1);
+            if (i < 2000 && std::abs(light.pdf(direction) - pdf) > 1e-3f * pdf) inverse.add(0);
+            else if (i < 2000) inverse.add(1);
             integral.add(radiance.y / pdf);
         }
         EXPECT_GT(inverse.mean(), 0.995);

@@ -59,10 +59,12 @@ const Kind kKinds[] = {
          light.radius = 0.7f;
          tiny.addLight(light, translation(Vec3(0.4f, 1, -0.3f)));
      }},
-    {"Mesh", [](TinyScene& tiny) { tiny.add(facetedSphere(0.6f, 12), glow(false, false), translation(Vec3(0.3f, 1, 0.4f))); }},
+    {"Mesh",
+     [](TinyScene& tiny) { tiny.add(facetedSphere(0.6f, 12), glow(false, false), translation(Vec3(0.3f, 1, 0.4f))); }},
     {"MirroredTexturedMesh",
      [](TinyScene& tiny) {
-         tiny.add(sphereMesh(0.6f, 16, 8), glow(true, false), translation(Vec3(0.3f, 1, 0.4f)) * scaling(Vec3(-1, 1.2f, 0.8f)));
+         tiny.add(sphereMesh(0.6f, 16, 8), glow(true, false),
+                  translation(Vec3(0.3f, 1, 0.4f)) * scaling(Vec3(-1, 1.2f, 0.8f)));
      }},
     {"SheetOfBothSides",
      [](TinyScene& tiny) {
@@ -140,7 +142,8 @@ TEST_P(LightDirections, FallAsTheirDensitySays) {
     scene.embree.bind(*scene.posed);
     scene.tables = makeSceneTables(*scene.posed, scene.embree);
     scene.lights.build(*scene.posed, scene.tables);
-    const LightReceiver receiver{Vec3(0), glm::normalize(Vec3(0.1f, 1, 0.2f)), 0, LightReceiver::Facing::Front, LightSampling::Tree};
+    const LightReceiver receiver{Vec3(0), glm::normalize(Vec3(0.1f, 1, 0.2f)), 0, LightReceiver::Facing::Front,
+                                 LightSampling::Tree};
 
     std::vector<double> observed(kCells + 1, 0), expected(kCells + 1, 0);
     for (uint32_t i = 0; i < kSamples; ++i) {
@@ -151,7 +154,8 @@ TEST_P(LightDirections, FallAsTheirDensitySays) {
     double whole = 0;
     for (int ring = 0; ring < kRings * kInner; ++ring)
         for (int sector = 0; sector < kSectors * kInner; ++sector) {
-            const Vec3 direction = directionIn((static_cast<float>(ring) + 0.5f) / kInner, (static_cast<float>(sector) + 0.5f) / kInner);
+            const Vec3 direction =
+                directionIn((static_cast<float>(ring) + 0.5f) / kInner, (static_cast<float>(sector) + 0.5f) / kInner);
             const double share = densityAlong(scene, receiver, direction) * 4 * kPi / (kCells * kInner * kInner);
             expected[static_cast<size_t>(ring / kInner * kSectors + sector / kInner)] += share * kSamples;
             whole += share;

@@ -61,7 +61,8 @@ TEST(LightTree, UniteContainsBoth) {
             float cosine = glm::dot(all.axis, one.axis);
             if (all.bothSides) cosine = std::abs(cosine);
             const float spread = std::acos(std::clamp(one.cosSpread, -1.0f, 1.0f));
-            const float angle = std::acos(std::clamp(cosine, -1.0f, 1.0f)) + (all.bothSides && one.cosSpread <= -1 ? 0 : spread);
+            const float angle =
+                std::acos(std::clamp(cosine, -1.0f, 1.0f)) + (all.bothSides && one.cosSpread <= -1 ? 0 : spread);
             if (all.cosSpread > -1) {
                 EXPECT_LE(angle, std::acos(all.cosSpread) + 2e-3f) << i << ' ' << k;
             }
@@ -113,7 +114,8 @@ TEST(LightTree, DrawsAsOftenAsItSays) {
             }
             double sum = 0;
             for (uint32_t i = 0; i < lights.size(); ++i)
-                sum += tree.probability(point, elsewhere, i), expected[i] = count * double(tree.probability(point, elsewhere, i));
+                sum += tree.probability(point, elsewhere, i),
+                    expected[i] = count * double(tree.probability(point, elsewhere, i));
             const double other = elsewhere > 0 ? 1 - tree.share(point, elsewhere) : 0.0;
             expected[lights.size()] = count * other;
             expected.back() = count * std::max(0.0, 1 - sum - other);
@@ -163,7 +165,8 @@ TEST(LightTree, FarGroupsAreDrawnByIntensityAndAsTheySay) {
     double total = 0;
     for (const LightBounds& light : lights) total += light.intensity;
     for (uint32_t i = 0; i < lights.size(); i += 5)
-        EXPECT_NEAR(tree.probability(far, 0, i), lights[i].intensity / total, 1e-3 * lights[i].intensity / total + 1e-9);
+        EXPECT_NEAR(tree.probability(far, 0, i), lights[i].intensity / total,
+                    1e-3 * lights[i].intensity / total + 1e-9);
 }
 
 TEST(LightTree, ComesCloserToIrradianceThanIntensityAlone) {
@@ -179,7 +182,8 @@ TEST(LightTree, ComesCloserToIrradianceThanIntensityAlone) {
         double byTree = 0, byIntensity = 0;
         for (uint32_t i = 0; i < lights.size(); ++i) {
             const double d2 = glm::dot(lights[i].box.centre() - p, lights[i].box.centre() - p);
-            const double e = irradiance(lights[i], p, n, 1) * std::min(1.0, d2 / 0.25), q = tree.probability(pointAt(p, n, 1), 0, i);
+            const double e = irradiance(lights[i], p, n, 1) * std::min(1.0, d2 / 0.25),
+                         q = tree.probability(pointAt(p, n, 1), 0, i);
             if (e > 0 && q > 0) byTree += e * e / q;
             byIntensity += e * e / (lights[i].intensity / total);
         }

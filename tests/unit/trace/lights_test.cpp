@@ -201,7 +201,8 @@ TEST_P(LightDensity, OfHitsIntegratesToTheChanceOfExtendedLights) {
             const SurfacePoint point = surfacePoint(scene.tables, hit, position, 0);
             const Surface surface = evaluateSurface(scene.tables, point, -direction, 0);
             if (surface.body >= 0) {
-                if (surface.frontFace) density += scene.lights.pdfBody(surface.body, receiver, direction, surface.position);
+                if (surface.frontFace)
+                    density += scene.lights.pdfBody(surface.body, receiver, direction, surface.position);
             } else {
                 density += scene.lights.pdfTriangle(point.instance, point.primitive, receiver, direction,
                                                     surface.position, surface.outwardNormal);
@@ -212,7 +213,8 @@ TEST_P(LightDensity, OfHitsIntegratesToTheChanceOfExtendedLights) {
     }
     // The sky is the last entry, and the point light before it has no density.
     const auto count = static_cast<uint32_t>(scene.lights.count());
-    const double expected = totalProbability(scene.lights, receiver) - scene.lights.pickProbability(receiver, count - 1) -
+    const double expected = totalProbability(scene.lights, receiver) -
+                            scene.lights.pickProbability(receiver, count - 1) -
                             scene.lights.pickProbability(receiver, count - 2);
     EXPECT_NEAR(moments.mean(), expected, 4.5 * std::sqrt(moments.meanVariance()));
     EXPECT_LT(std::sqrt(moments.meanVariance()), 0.03);
@@ -284,7 +286,8 @@ TEST(Lights, LanesSampleAsOneByOne) {
             const Vec3 place = (Vec3(numbers.one(), numbers.one(), numbers.one()) - Vec3(0.5f)) * 6.0f;
             receivers[i] = {place, sampleSphere(numbers.two()), 0, LightReceiver::Facing::Front, LightSampling::Tree};
             // The last entries are those without a triangle.
-            const uint32_t entry = i % 2 == 0 ? first + i : static_cast<uint32_t>(scene.lights.count()) - 1 - i % 15 / 2;
+            const uint32_t entry =
+                i % 2 == 0 ? first + i : static_cast<uint32_t>(scene.lights.count()) - 1 - i % 15 / 2;
             choices[i] = {entry % static_cast<uint32_t>(scene.lights.count()), 0.3f};
             lanes->position.set(static_cast<int>(i), place);
             lanes->lightPointX[i] = numbers.one(), lanes->lightPointY[i] = numbers.one();

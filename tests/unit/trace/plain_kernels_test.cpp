@@ -1,5 +1,5 @@
-// Kernels of plain surfaces against the classes that do the same one by one, and against themselves on every instruction
-// set.
+// Kernels of plain surfaces against the classes that do the same one by one, and against themselves on every
+// instruction set.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -63,7 +63,8 @@ std::unique_ptr<PlainLanes> makeLanes(std::vector<BsdfInputs>& materials) {
         lanes->metallic[i] = in.metallic, lanes->roughness[i] = in.roughness;
         lanes->ior[i] = in.ior, lanes->specular[i] = in.specular;
         lanes->lobes[i] = PlainLanes::kDiffuseLobe | PlainLanes::kSpecularLobe;
-        lanes->lobeX[i] = u.next(), lanes->bsdfX[i] = u.next(), lanes->bsdfY[i] = u.next(), lanes->rouletteX[i] = u.next();
+        lanes->lobeX[i] = u.next(), lanes->bsdfX[i] = u.next(), lanes->bsdfY[i] = u.next(),
+        lanes->rouletteX[i] = u.next();
         lanes->lightDirection.set(i, frame.toWorld(sampleCosineHemisphere(u.next2())));
         lanes->lightTarget.set(i, Vec3(0)), lanes->lightRadiance.set(i, Vec3(1));
         lanes->lightDistance[i] = kInfinity, lanes->lightPdf[i] = 1, lanes->lightWeighs[i] = 0;
@@ -80,7 +81,8 @@ void run(const PlainLobeKernels& kernels, PlainLanes& lanes) {
 }
 
 void expectNear(const Vec3& found, const Vec3& expected, int lane) {
-    for (int c = 0; c < 3; ++c) ASSERT_NEAR(found[c], expected[c], 2e-4f * std::abs(expected[c]) + 2e-5f) << "lane " << lane;
+    for (int c = 0; c < 3; ++c)
+        ASSERT_NEAR(found[c], expected[c], 2e-4f * std::abs(expected[c]) + 2e-5f) << "lane " << lane;
 }
 
 }  // namespace

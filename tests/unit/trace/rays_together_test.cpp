@@ -27,8 +27,8 @@ Mesh soup(uint32_t count, float size, uint32_t seed) {
     return mesh;
 }
 
-/// What stands still; instances of one mesh, one of them mirrored; one that moves while the shutter is open; gauze that half of
-/// the rays pass; sheets without backs; a lamp.
+/// What stands still; instances of one mesh, one of them mirrored; one that moves while the shutter is open; gauze that
+/// half of the rays pass; sheets without backs; a lamp.
 TinyScene crowd(uint32_t triangles) {
     TinyScene tiny;
     const float size = triangles < 1000 ? 0.7f : 0.15f;

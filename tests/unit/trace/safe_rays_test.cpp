@@ -1,4 +1,5 @@
-// Rays that are no rays meet nothing, directions that are none look up some light, and what a transform flattens is seen.
+// Rays that are no rays meet nothing, directions that are none look up some light, and what a transform flattens is
+// seen.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -91,8 +92,7 @@ TEST(SafeRays, WhatATransformFlattensIsSeen) {
     const int grey = tiny.addMaterial(lambert(0.5f));
     const auto ball = std::make_shared<const Mesh>(sphereMesh(1, 16, 8));
     const float heights[] = {0, 1e-30f, 1e-12f, 1};
-    for (int i = 0; i < 4; ++i)
-        tiny.add(ball, grey, translation(Vec3(3 * i, 0, 0)) * scaling(Vec3(1, heights[i], 1)));
+    for (int i = 0; i < 4; ++i) tiny.add(ball, grey, translation(Vec3(3 * i, 0, 0)) * scaling(Vec3(1, heights[i], 1)));
     tiny.add(ball, grey, translation(Vec3(20, 0, 0)) * scaling(Vec3(0)));
     const auto posed = tiny.pose();
     Tracer tracer;
@@ -106,7 +106,8 @@ TEST(SafeRays, WhatATransformFlattensIsSeen) {
     }
     // A whole frame of it, with sky and reflections.
     Signals signals;
-    const FrameSampling whole = frameOf(lookFrom({4, 3, 9}, {4, 0, 0}), {32, 18}, 2, PathSettings(), SignalSet{Signal::Noisy});
+    const FrameSampling whole =
+        frameOf(lookFrom({4, 3, 9}, {4, 0, 0}), {32, 18}, 2, PathSettings(), SignalSet{Signal::Noisy});
     ASSERT_TRUE(tracer.sample(whole, signals));
     const Image& noisy = signals[Signal::Noisy];
     for (size_t i = 0; i < noisy.size(); ++i) ASSERT_TRUE(std::isfinite(noisy.data()[i])) << i;
@@ -130,8 +131,12 @@ TEST(SafeRays, WhatIsFlatForAMomentMovesOn) {
         const auto scene = tiny.pose()->scene;
         Tracer tracer;
         std::shared_ptr<const PosedScene> before;
-        for (const auto& [open, close, height] : {std::tuple(0.0f, 0.0f, 0.98f), {0.5f, 0.5f, 0.0f}, {0.75f, 0.75f, 0.49f}, {0.5f, 0.6f, 0.0f},
-                                                  {0.4f, 0.6f, 0.196f}, {0.25f, 0.25f, 0.49f}}) {
+        for (const auto& [open, close, height] : {std::tuple(0.0f, 0.0f, 0.98f),
+                                                  {0.5f, 0.5f, 0.0f},
+                                                  {0.75f, 0.75f, 0.49f},
+                                                  {0.5f, 0.6f, 0.0f},
+                                                  {0.4f, 0.6f, 0.196f},
+                                                  {0.25f, 0.25f, 0.49f}}) {
             before = poseScene(scene, {open, close, open}, before.get());
             tracer.bind(before);
             const Hit hit = above(tracer, 0.1f);
@@ -149,7 +154,11 @@ TEST(SafeRays, FramesOfCamerasOutOfReachAreRefused) {
     Signals signals;
     Camera camera = lookFrom({0, 1e30f, 0}, Vec3(0));
     const SignalSet wanted{Signal::Noisy};
-    expectError(ErrorKind::BadInput, [&] { tracer.sample(frameOf(camera, {8, 8}, 1, PathSettings(), wanted), signals); }, {"the camera", "1e+30"});
+    expectError(ErrorKind::BadInput,
+                [&] {
+                    tracer.sample(frameOf(camera, {8, 8}, 1, PathSettings(), wanted), signals);
+                },
+                {"the camera", "1e+30"});
     camera = lookFrom({0, 1, 3}, Vec3(0));
     FrameSampling sampling = frameOf(camera, {8, 8}, 1, PathSettings(), wanted);
     EXPECT_TRUE(tracer.sample(sampling, signals));
