@@ -275,11 +275,11 @@ def walk_through(window):
     dropped = FOLDER / "dropped.obj"
     dropped.write_text(OBJ)
     (FOLDER / "dropped.mtl").write_text("newmtl glow\nKd 0 0 0\nKe 1 0.2 0.1\n")
+    shown = window.shot("10-dropped")
     subprocess.run([sys.executable, HERE / "xdnd_source.py", window.id, str(x), str(y), dropped], check=True)
     window.until("the dropped scene", lambda: window.title().startswith("dropped"))
-    time.sleep(3)
-    after = window.shot("10-dropped")
-    assert difference(after, wiped, PICTURE) > 5, "the dropped scene is on the screen"
+    window.until("its picture", lambda: difference(window.shot("10-dropped"), shown, PICTURE) > 5)
+    after = window.settled_shot("10-dropped")
     passed("opens a dropped file")
 
     not_json = FOLDER / "broken.gltf"
