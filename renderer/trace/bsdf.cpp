@@ -77,6 +77,8 @@ BsdfSample Bsdf::sampleCoat(Vec2 u) const {
     const Vec3 wi = coat_->sample(u);
     if (wi.z <= 0) return {};
     if (coat_->isDelta()) return {wi, Vec3(coat_->albedo() / coatShare_), 0, true, Lobe::Clearcoat};
+    // Over the surface and yet under the varnish, where that leans: evaluate() knows no such light.
+    if (!(coat_->evaluate(wi).pdf > 0)) return {};
     return combined(wi, Lobe::Clearcoat);
 }
 

@@ -14,6 +14,8 @@ Vec3 usableNormal(const Vec3& normal, const Vec3& wo) {
 
 }  // namespace
 
+float clearcoatReflectance(float cosine) { return kF0 + (1 - kF0) * schlickWeight(saturate(cosine)); }
+
 Clearcoat::Clearcoat(const LayerInputs& layers, const Vec3& wo) : frame_(usableNormal(layers.clearcoatNormal, wo)) {
     wo_ = frame_.toLocal(wo);
     wo_.z = std::max(wo_.z, kMinCosine);
@@ -33,7 +35,7 @@ LobeValue Clearcoat::evaluate(const Vec3& direction) const {
     const Vec3 wi = frame_.toLocal(direction), h = halfVector(wo_ + wi);
     const float cosFacet = glm::dot(wo_, h);
     if (wi.z <= 0 || cosFacet <= 0 || smooth_) return {};
-    const float fresnel = kF0 + (1 - kF0) * schlickWeight(cosFacet), density = ggx_.distribution(h) / (4 * wo_.z);
+    const float fresnel = clearcoatReflectance(cosFacet), density = ggx_.distribution(h) / (4 * wo_.z);
     return {Vec3(weight_ * fresnel * density * maskingShadowing(lambdaO_, ggx_.lambda(wi))), density / (1 + lambdaO_)};
 }
 

@@ -6,6 +6,9 @@
 
 namespace lumi {
 
+/// Fresnel reflectance of the varnish at a cosine to its normal (Schlick).
+float clearcoatReflectance(float cosine);
+
 /// A clear varnish over a surface: GGX reflection under Schlick's Fresnel term at index 1.5, about a normal of its own.
 /// Single scattering: what facets of that little reflectance scatter twice is lost.
 class Clearcoat {
@@ -18,7 +21,7 @@ public:
     float albedo() const { return albedo_; }
     /// `wi` in the surface's local frame. 0 if a delta.
     LobeValue evaluate(const Vec3& wi) const;
-    /// A direction by the facets that wo sees, or the mirrored one; it may lie under the surface below.
+    /// A direction by the facets that wo sees, or the mirrored one; it may lie under the surface below, or under the varnish.
     Vec3 sample(Vec2 u) const;
 
 private:

@@ -209,9 +209,10 @@ bool Lights::sampleTriangle(const Triangle& atOpen, const LightReceiver& receive
     const bool front = triangle.flags & Triangle::kMirrored ? cosine < 0 : cosine > 0;
     if (cosine == 0 || (!front && !(triangle.flags & Triangle::kDoubleSided))) return false;
     out.pdf = distance2 / (0.5f * twiceArea * std::abs(cosine));
-    out.radiance = triangle.flags & Triangle::kTextured
-                       ? triangleEmission(*tables_, triangle.instance, triangle.primitive, b)
-                       : triangle.radiance;
+    out.radiance =
+        triangle.flags & Triangle::kTextured
+            ? triangleEmission(*tables_, {triangle.instance, triangle.primitive, b, receiver.time}, -out.direction)
+            : triangle.radiance;
     out.target = offsetOrigin(out.position, cosine > 0 ? normal : -normal, triangle.offset);
     return true;
 }

@@ -114,7 +114,7 @@ private:
             kMirrored = 2,
             kMoves = 4,
             kTextured = 8
-        };  ///< textured: emission or alpha
+        };  ///< textured: emission or alpha, or the radiance depends on the direction
         Vec3 corner, edge1, edge2;
         Vec3 radiance{0};  ///< unless textured
         uint32_t instance = 0, primitive = 0;

@@ -127,9 +127,9 @@ void Lights::addTriangles(Collected& collected) {
                 triangle.radiance = material.emission;
                 triangle.instance = static_cast<uint32_t>(i), triangle.primitive = primitive;
                 triangle.offset = r.objectScale * 0x1p-18f;
-                // Or in the vertices' colours, which an unlit surface shines in.
+                // Or in the vertices' colours, which an unlit surface shines in, or through a varnish.
                 const bool textured = (material.textures & MaterialRecord::kEmission) || material.source->hasAlpha() ||
-                                      (material.unlit && r.colours);
+                                      (material.unlit && r.colours) || material.coatedEmission;
                 const auto mark = [&](bool on, uint32_t flag) { triangle.flags |= on ? flag : 0u; };
                 mark(material.doubleSided, Triangle::kDoubleSided), mark(textured, Triangle::kTextured);
                 mark(r.mirrored, Triangle::kMirrored), mark(r.track != nullptr, Triangle::kMoves);

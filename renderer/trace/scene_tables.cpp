@@ -29,6 +29,7 @@ MaterialRecord makeMaterial(const Material& m) {
     r.layered = m.isLayered();
     r.doubleSided = m.doubleSided;
     r.emits = m.emits();
+    r.coatedEmission = r.emits && m.clearcoat > 0;
     r.unlit = m.unlit;
     r.metallic = m.metallic, r.roughness = m.roughness, r.ior = m.ior, r.specular = m.specular;
     r.transmission = m.transmission;

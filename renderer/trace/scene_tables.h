@@ -63,8 +63,9 @@ struct MaterialRecord {
     };
     uint32_t textures = 0;  ///< which of the above are present
     bool solid = false, doubleSided = true, emits = false;
-    bool unlit = false;    ///< the instance's colours multiply the emission
-    bool layered = false;  ///< the source's clearcoat, sheen, anisotropy or iridescence take part
+    bool unlit = false;           ///< the instance's colours multiply the emission
+    bool coatedEmission = false;  ///< it emits through a clearcoat
+    bool layered = false;         ///< the source's clearcoat, sheen, anisotropy or iridescence take part
     float metallic = 0, roughness = 0.5f, ior = 1.5f, specular = 1, transmission = 0;
     Vec3 baseColor{1}, specularColor{1}, emission{0};
     Vec3 absorption{0};  ///< 1/m inside a solid (Beer-Lambert)

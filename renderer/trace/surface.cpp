@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "trace/clearcoat.h"
 #include "trace/coverage.h"
 #include "trace/moving_triangle.h"
 #include "trace/quick_unit.h"
@@ -154,6 +155,13 @@ SurfaceGeometry geometryOf(const SceneTables& tables, const InstanceRecord& r, c
     return g;
 }
 
+/// Share of the emission below that a clearcoat lets through towards wo [KHR_materials_clearcoat, "Emission"].
+float coatTransmittance(const Surface& s, const Vec3& wo) {
+    const LayerInputs& layers = s.inputs.layers;
+    const float cosine = glm::dot(layers.clearcoatNormal, Frame(s.normal).toLocal(wo));
+    return 1 - saturate(layers.clearcoat) * clearcoatReflectance(cosine);
+}
+
 Surface surfaceOf(const SceneTables& tables, const InstanceRecord& r, const UVec3& t, const SurfacePoint& point,
                   const SurfaceGeometry& geometry, const Vec3& wo, MipFilter mips) {
     const Vec2 b = point.barycentrics;
@@ -210,6 +218,13 @@ Surface surfaceOf(const SceneTables& tables, const InstanceRecord& r, const UVec
         }
     }
     s.inputs.entering = s.frontFace;
+    if (material.coatedEmission && !isBlack(s.emitted)) {
+        // Unfiltered, as all emission.
+        SurfaceGeometry sharp = geometry;
+        sharp.footprint = 0;
+        s.emitted *= geometry.footprint > 0 ? coatTransmittance(surfaceOf(tables, r, t, point, sharp, wo, mips), wo)
+                                            : coatTransmittance(s, wo);
+    }
     return s;
 }
 
@@ -252,13 +267,15 @@ Vec3 restNormal(const SceneTables& tables, const SurfacePoint& point, bool front
     return quickUnitOr(frontFace ? rest : -rest, Vec3(0, 1, 0));
 }
 
-Vec3 triangleEmission(const SceneTables& tables, uint32_t instance, uint32_t primitive, Vec2 barycentrics) {
-    const InstanceRecord& r = tables.instances[instance];
-    const MaterialRecord& material = tables.materials[r.materialOf(primitive)];
-    const UVec3& corners = r.triangles[primitive];
-    const Vec3 emission = emissionAt(material, r, corners, barycentrics);
+Vec3 triangleEmission(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo) {
+    const InstanceRecord& r = tables.instances[point.instance];
+    const MaterialRecord& material = tables.materials[r.materialOf(point.primitive)];
+    const UVec3& corners = r.triangles[point.primitive];
+    const Vec2 b = point.barycentrics;
+    const Vec3 emission =
+        material.coatedEmission ? evaluateSurface(tables, point, wo, 0).emitted : emissionAt(material, r, corners, b);
     if (!material.source->hasAlpha()) return emission;
-    return emission * coverage(*material.source, alphaAt(*material.source, corners, r.colours, r.uv, barycentrics));
+    return emission * coverage(*material.source, alphaAt(*material.source, corners, r.colours, r.uv, b));
 }
 
 Vec3 offsetOrigin(const Vec3& position, const Vec3& normal, float extra) {

@@ -61,8 +61,9 @@ Vec3 smoothNormal(const SceneTables& tables, const SurfacePoint& point);
 Vec3 surfacePosition(const SceneTables& tables, const SurfacePoint& point);
 Vec3 previousSurfacePosition(const SceneTables& tables, const PosedScene& posed, const SurfacePoint& point);
 
-/// Emission of a triangle's point times its coverage, textures unfiltered: what a light sample there is worth.
-Vec3 triangleEmission(const SceneTables& tables, uint32_t instance, uint32_t primitive, Vec2 barycentrics);
+/// Emission of a triangle's point towards unit wo times its coverage, textures unfiltered: what a light sample there is
+/// worth.
+Vec3 triangleEmission(const SceneTables& tables, const SurfacePoint& point, const Vec3& wo);
 
 /// A start for rays that leave `position` towards the side of `normal`: moved by a few hundred units in the last place
 /// of each coordinate [Waechter & Binder 2019], and by `extra` metres more.

@@ -62,17 +62,20 @@ double integratePdf(const Bsdf& bsdf, const Cell& cell, double whole, int depth)
     return sum;
 }
 
-double deltaShare(const Bsdf& bsdf, const BsdfInputs& inputs) {
-    const bool coat = inputs.layers.clearcoatRoughness < Bsdf::kDeltaRoughness;
+double deltaShare(const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo) {
+    const glm::dvec3 n = coatNormal(inputs, wo);
+    const bool above = 2 * glm::dot(n, glm::dvec3(wo)) * n.z > wo.z;
+    const bool coat = inputs.layers.clearcoatRoughness < Bsdf::kDeltaRoughness && above;
     const float onTop = coat ? bsdf.probability(Lobe::Clearcoat) : 0;
     if (inputs.roughness >= Bsdf::kDeltaRoughness || inputs.layers.anisotropy > 0) return onTop;
     return onTop + bsdf.probability(Lobe::SpecularReflection) + bsdf.probability(Lobe::SpecularTransmission);
 }
 
-/// Mirrors lose no sample. Facets of a coat lose those that reflect downwards, and those weigh nothing in its albedo
+/// Mirrors lose no sample; a coat that leans may lose all. Facets of a coat lose those that reflect downwards, and those weigh nothing in its albedo
 /// while the others weigh 1 at most: what facets that reflect everything lack bounds them.
 double mostLostByCoat(const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo) {
     const float roughness = inputs.layers.clearcoatRoughness;
+    if (coatNormal(inputs, wo).z < 1) return bsdf.probability(Lobe::Clearcoat);
     if (roughness < Bsdf::kDeltaRoughness) return 0;
     const Vec2 all = SchlickAlbedo::get().directional(RoughnessRow(roughness), {sqr(roughness), wo.z});
     return bsdf.probability(Lobe::Clearcoat) * (1 - all.x - all.y);
@@ -103,9 +106,9 @@ TEST(BsdfDistribution, ChiSquare) {
                         const int cell = s.lobe == Lobe::None ? kCells : s.delta ? kCells + 1 : cellOf(s.wi);
                         observed[static_cast<size_t>(cell)] += 1;
                     }
-                    expected[kCells + 1] = deltaShare(bsdf, inputs) * kSamples;
+                    expected[kCells + 1] = deltaShare(bsdf, inputs, wo) * kSamples;
                     // What is absorbed has no density of its own: what the others leave.
-                    const double absorbed = 1 - integral - deltaShare(bsdf, inputs);
+                    const double absorbed = 1 - integral - deltaShare(bsdf, inputs, wo);
                     EXPECT_GE(absorbed, -2e-4) << label;
                     const double most = inputs.roughness == 0 ? mostLostByCoat(bsdf, inputs, wo) + 2e-4 : 1;
                     EXPECT_LE(absorbed, most) << label;

@@ -50,6 +50,17 @@ const std::vector<NamedMaterial>& materials() {
         layered("roughly varnished gold", [&](BsdfInputs& i, LayerInputs& l) {
             i.metallic = 1, i.baseColor = gold, l.clearcoat = 0.8f, l.clearcoatRoughness = 0.3f;
         });
+        layered("red plastic, a rough varnish with bumps of its own", [&](BsdfInputs& i, LayerInputs& l) {
+            i.baseColor = red, l.clearcoat = 0.9f, l.clearcoatRoughness = 0.3f;
+            l.clearcoatNormal = glm::normalize(Vec3(0.3f, -0.2f, 1));
+        });
+        layered("gold, a varnish that leans away", [&](BsdfInputs& i, LayerInputs& l) {
+            i.metallic = 1, i.baseColor = gold, l.clearcoat = 1, l.clearcoatRoughness = 0.25f;
+            l.clearcoatNormal = glm::normalize(Vec3(-0.3f, 0.2f, 1));
+        });
+        layered("smooth varnish with bumps of its own", [&](BsdfInputs&, LayerInputs& l) {
+            l.clearcoat = 1, l.clearcoatNormal = glm::normalize(Vec3(0.5f, 0.1f, 1));
+        });
         layered("red velvet", [&](BsdfInputs& i, LayerInputs& l) {
             i.baseColor = red, l.sheenColor = {0.9f, 0.5f, 0.3f}, l.sheenRoughness = 0.3f;
         });
@@ -111,7 +122,17 @@ void forEachBsdf(const std::vector<float>& roughnesses, const std::vector<float>
             }
 }
 
-Facets::Facets(const BsdfInputs& inputs, Lobe lobe) {
+glm::dvec3 coatNormal(const BsdfInputs& inputs, const Vec3& wo) {
+    const Vec3& normal = inputs.layers.clearcoatNormal;
+    return glm::dot(normal, wo) > 0 ? glm::dvec3(normal) : glm::dvec3(0, 0, 1);
+}
+
+Facets::Facets(const BsdfInputs& inputs, Lobe lobe, const Vec3& wo) {
+    if (lobe == Lobe::Clearcoat) {
+        const glm::dvec3 z = coatNormal(inputs, wo);
+        const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), z));
+        axes_ = glm::dmat3(x, glm::cross(z, x), z);
+    }
     const float roughness = lobe == Lobe::Clearcoat ? inputs.layers.clearcoatRoughness : inputs.roughness;
     alpha_ = sqr(double(std::max(roughness, Bsdf::kDeltaRoughness)));
     const bool stretched = inputs.layered && inputs.layers.anisotropy > 0 && lobe != Lobe::Clearcoat;
@@ -125,7 +146,7 @@ glm::dvec3 Facets::at(double steeper, double phi, double& density) const {
     const double cosH = 1 / std::sqrt(1 + tan2), sinH = std::sqrt(tan2) * cosH;
     glm::dvec3 h(sinH * std::cos(phi), sinH * std::sin(phi), cosH);
     density = alpha2 / (M_PI * cosH * cosH * cosH * sqr(alpha2 + tan2));
-    if (along_ == 1) return h;
+    if (along_ == 1) return axes_ * h;
     // Slopes stretched along x spread the density over as much more of them.
     const double slopeX = h.x / h.z * along_, slopeY = h.y / h.z, c = std::cos(turn_), s = std::sin(turn_);
     h = glm::normalize(glm::dvec3(slopeX * c - slopeY * s, slopeX * s + slopeY * c, 1));
@@ -178,7 +199,7 @@ double scattered(const glm::dvec3& wo, const glm::dvec3& h, Lobe lobe, const Bsd
 }
 
 Vec3 integrateFacets(const Bsdf& once, const BsdfInputs& inputs, const Vec3& wo, Lobe lobe, int rings, int sectors) {
-    const Facets facets(inputs, lobe);
+    const Facets facets(inputs, lobe, wo);
     glm::dvec3 sum(0);
     for (int i = 0; i < rings; ++i)
         for (int j = 0; j < sectors; ++j) {

@@ -27,10 +27,14 @@ constexpr Lobe kLobes[] = {Lobe::Diffuse, Lobe::SpecularReflection, Lobe::Specul
                            Lobe::Sheen};
 constexpr int kLobeCount = 5;
 
+/// Of the varnish seen along wo: its own, or the surface's if that faces away.
+glm::dvec3 coatNormal(const BsdfInputs& inputs, const Vec3& wo);
+
 /// Normals of a lobe's facets as its distribution spreads them, not as sample() sees them.
 class Facets {
 public:
-    Facets(const BsdfInputs& inputs, Lobe lobe);
+    /// `wo` chooses the normal of a clearcoat's.
+    Facets(const BsdfInputs& inputs, Lobe lobe, const Vec3& wo = Vec3(0, 0, 1));
     /// The normal at azimuth `phi` (before stretching) that a share `steeper` in (0,1] of facets is steeper than, and
     /// how much of (share, azimuth over a turn) a solid angle there holds.
     glm::dvec3 at(double steeper, double phi, double& density) const;
@@ -39,6 +43,7 @@ public:
 
 private:
     double alpha_, along_, turn_;
+    glm::dmat3 axes_{1};  ///< of the normal about which they lie, as columns
 };
 
 /// Integral of evaluate(wi, lobe) over the sphere.

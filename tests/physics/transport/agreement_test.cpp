@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "support/image_tests.h"
+#include "support/texel_picture.h"
 #include "support/transport_scene.h"
 
 namespace lumi {
@@ -103,6 +104,7 @@ TinyScene layeredScene() {
     };
     Material coated = lambert(Vec3(0.6f, 0.2f, 0.1f));
     coated.clearcoat = 0.8f, coated.clearcoatRoughness = 0.45f;
+    coated.clearcoatNormalTexture = texelPicture({2, 1}, {Vec3(0.8f, 0.5f, 0.9f), Vec3(0.3f, 0.3f, 0.9f)});
     ball(coated);
     Material velvet = lambert(Vec3(0.2f, 0.1f, 0.3f));
     velvet.sheenColor = Vec3(0.9f, 0.7f, 0.8f), velvet.sheenRoughness = 0.4f;

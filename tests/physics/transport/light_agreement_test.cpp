@@ -80,6 +80,13 @@ const Emitter kEmitters[] = {
      }},
     {"UnlitMeshInItsVerticesColours", [](TinyScene& tiny) { addColouredBall(tiny, 0.6f, true); }},
     {"UnlitMeshWithoutATexture", [](TinyScene& tiny) { addColouredBall(tiny, 0.3f, false); }},
+    {"MeshUnderAVarnish",
+     [](TinyScene& tiny) {
+         Material glow = shining(true, false);
+         glow.clearcoat = 1, glow.clearcoatRoughness = 0.5f;
+         glow.clearcoatNormalTexture = texelPicture({2, 1}, {Vec3(0.8f, 0.5f, 0.9f), Vec3(0.3f, 0.4f, 0.9f)});
+         tiny.add(sphereMesh(0.6f, 16, 8), glow, translation(Vec3(0.4f, 1.5f, 0)));
+     }},
     {"ManyBalls",
      [](TinyScene& tiny) {
          const auto ball = std::make_shared<const Mesh>(facetedSphere(0.15f, 8));

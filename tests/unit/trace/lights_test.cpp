@@ -107,6 +107,8 @@ TinyScene manyLights() {
     const auto ball = std::make_shared<const Mesh>(facetedSphere(0.4f, 12));
     tiny.add(ball, material, translation(Vec3(-2, 0, 0)));
     tiny.add(ball, material, translation(Vec3(0, 0, -2)) * scaling(Vec3(-1, 0.5f, 1.5f)));
+    glow.clearcoat = 0.9f;
+    tiny.add(facetedSphere(0.2f, 6), glow, translation(Vec3(1.2f, -1.2f, 0.8f)));
     Light light;
     light.type = LightType::Rectangle;
     tiny.addLight(light, lookAt(Vec3(2, 0.5f, 0), Vec3(0)));
@@ -249,6 +251,24 @@ TEST_P(LightDensity, IsCarriedBySamples) {
         ++compared;
     }
     EXPECT_GT(compared, 500);
+}
+
+// A varnish darkens what shines below it by its Fresnel reflectance [KHR_materials_clearcoat, "Emission"].
+TEST(Lights, EmissionPassesTheVarnishOverIt) {
+    TinyScene tiny;
+    Material glow = lambert(0);
+    glow.emission = Vec3(2, 1, 0.5f), glow.clearcoat = 0.8f, glow.clearcoatRoughness = 0.4f;
+    tiny.add(rectangleMesh(2, 2, Facing::Y), glow, Mat4(1));
+    TraceScene scene;
+    bindTo(scene, tiny.pose());
+    for (const float cosine : {1.0f, 0.5f, 0.17f}) {
+        const Vec3 wo(std::sqrt(1 - cosine * cosine), cosine, 0);
+        const float expected = 1 - 0.8f * (0.04f + 0.96f * std::pow(1 - cosine, 5.0f));
+        const SurfacePoint point{0, 0, {0.3f, 0.3f}, 0};
+        for (const Vec3& found :
+             {evaluateSurface(scene.tables, point, wo, 0.1f).emitted, triangleEmission(scene.tables, point, wo)})
+            EXPECT_LT(glm::distance(found, glow.emission * expected), 1e-5f) << cosine;
+    }
 }
 
 void expectNear(const Vec3& a, const Vec3& b, float tolerance, size_t lane) {
