@@ -24,7 +24,7 @@ inline std::vector<uint8_t> smallPng(uint8_t grey) {
 }
 
 /// What the other good files have not: textures on two sets of coordinates, every layer of a material, variants,
-/// weights that are animated, instances without a buffer view, lights and cameras.
+/// weights that are animated, instances without a buffer view, lights, cameras, and a joint outside the scene.
 inline void addAllThatIsShaded(GltfBuilder& file) {
     using nlohmann::json;
     file.triangle();
@@ -35,6 +35,8 @@ inline void addAllThatIsShaded(GltfBuilder& file) {
     attributes["TEXCOORD_0"] = file.floats({0, 0, 1, 0, 0, 1}, "VEC2", 2);
     attributes["TEXCOORD_1"] = file.floats({0, 0, 2, 0, 0, 3}, "VEC2", 2);
     attributes["COLOR_0"] = file.floats({1, 1, 1, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+    attributes["JOINTS_0"] = file.accessor(std::vector<uint8_t>(12, 0), "VEC4", 4, 5121);
+    attributes["WEIGHTS_0"] = file.floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
     primitive["targets"] = {{{"POSITION", file.floats({0, 0, 1, 0, 0, 0, 0, 0, 0}, "VEC3", 3)}},
                             {{"NORMAL", file.floats({0, 1, 0, 0, 0, 0, 0, 0, 0}, "VEC3", 3)}}};
     file.json["meshes"][0]["weights"] = {0.5, 0};
@@ -85,17 +87,20 @@ inline void addAllThatIsShaded(GltfBuilder& file) {
                                   {{"input", times}, {"output", scales}, {"interpolation", "CUBICSPLINE"}}}},
                                 {"channels",
                                  {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}},
+                                  {{"sampler", 0}, {"target", {{"node", 4}, {"path", "weights"}}}},
                                   {{"sampler", 1}, {"target", {{"node", 1}, {"path", "scale"}}}}}}}};
     file.json["accessors"].push_back({{"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
     const auto unviewed = static_cast<int>(file.json["accessors"].size()) - 1;
     file.json["nodes"] = {
-        {{"mesh", 0}, {"translation", {0, 0, -1}}},
+        {{"mesh", 0}, {"skin", 0}, {"translation", {0, 0, -1}}},
         {{"mesh", 0},
          {"scale", {1, 1, 0.5}},
          {"children", {2, 3}},
          {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", unviewed}}}}}}}},
         {{"camera", 0}, {"translation", {0, 0, 3}}},
-        {{"rotation", {0, 0.6, 0, 0.8}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}};
+        {{"rotation", {0, 0.6, 0, 0.8}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}},
+        {{"mesh", 0}, {"camera", 0}, {"translation", {0, 0, 1}}}};
+    file.json["skins"] = {{{"joints", {4}}}};
     file.json["scenes"] = {{{"nodes", {0, 1}}}};
     file.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}}};
     file.json["extensions"] = {

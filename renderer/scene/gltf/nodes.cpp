@@ -37,13 +37,14 @@ NodeTree::NodeTree(const Document& document, Scene& scene)
 
     // Joints may lie outside the scene's tree: they come along, without their meshes.
     const std::vector<int> shown = order_;
+    std::vector<bool> isKnown(model.skins.size(), false);
     std::vector<int> parentOf(model.nodes.size(), -1);
     for (size_t i = 0; i < model.nodes.size(); ++i)
         for (const int child : model.nodes[i].children) parentOf[static_cast<size_t>(child)] = static_cast<int>(i);
     for (const int node : shown) {
         const int skin = model.nodes[static_cast<size_t>(node)].skin;
-        if (skin < 0) continue;
-        document.checkIndex(skin, model.skins.size(), nodePath(static_cast<size_t>(node)) + "/skin", "skins");
+        if (skin < 0 || isKnown[static_cast<size_t>(skin)]) continue;
+        isKnown[static_cast<size_t>(skin)] = true;
         for (const int joint : model.skins[static_cast<size_t>(skin)].joints) {
             document.checkIndex(joint, model.nodes.size(), "/skins/" + std::to_string(skin) + "/joints", "nodes");
             int top = joint;
@@ -59,9 +60,7 @@ NodeTree::NodeTree(const Document& document, Scene& scene)
     order_ = shown;
     for (const int node : order_) {
         const int mesh = model.nodes[static_cast<size_t>(node)].mesh;
-        if (mesh < 0) continue;
-        document.checkIndex(mesh, model.meshes.size(), nodePath(static_cast<size_t>(node)) + "/mesh", "meshes");
-        usedMeshes_[static_cast<size_t>(mesh)] = true;
+        if (mesh >= 0) usedMeshes_[static_cast<size_t>(mesh)] = true;
     }
 }
 
@@ -109,14 +108,25 @@ void NodeTree::walk(int root, const std::string& rootPath) {
     }
 }
 
+void NodeTree::checkReferences(const tinygltf::Node& node, const std::string& path) const {
+    const tinygltf::Model& model = document_.model();
+    if (node.mesh >= 0) document_.checkIndex(node.mesh, model.meshes.size(), path + "/mesh", "meshes");
+    if (node.skin >= 0) document_.checkIndex(node.skin, model.skins.size(), path + "/skin", "skins");
+    if (node.camera >= 0) document_.checkIndex(node.camera, model.cameras.size(), path + "/camera", "cameras");
+    if (const auto* extension = extensionOf(node.extensions, "KHR_lights_punctual"))
+        document_.checkIndex(integerOf(*extension, "light", -1), model.lights.size(),
+                             path + "/extensions/KHR_lights_punctual/light", "extensions/KHR_lights_punctual/lights");
+}
+
 void NodeTree::addNode(int index, int parent) {
     const tinygltf::Node& source = document_.model().nodes[static_cast<size_t>(index)];
+    checkReferences(source, nodePath(static_cast<size_t>(index)));
     Node node;
     node.name = source.name.empty() ? "node-" + std::to_string(index) : source.name;
     node.parent = parent;
     readTransform(document_, source, nodePath(static_cast<size_t>(index)), node);
     std::vector<double> weights = source.weights;
-    if (weights.empty() && source.mesh >= 0 && source.mesh < static_cast<int>(document_.model().meshes.size()))
+    if (weights.empty() && source.mesh >= 0)
         weights = document_.model().meshes[static_cast<size_t>(source.mesh)].weights;
     for (const double weight : weights)
         node.morphWeights.push_back(std::isfinite(weight) ? static_cast<float>(weight) : 0);
@@ -142,7 +152,7 @@ void NodeTree::addInstances(size_t index) {
     instance.name = source.name.empty() ? instance.mesh->name : source.name;
     instance.node = nodeOf_[index];
     if (source.skin >= 0 && !instance.mesh->skin.empty()) {
-        instance.skin = addSkin(source.skin, nodePath(index) + "/skin");
+        instance.skin = addSkin(source.skin);
         checkJoints(instance, nodePath(index) + "/skin");
     }
     if (const auto* extension = extensionOf(source.extensions, "EXT_mesh_gpu_instancing"))
@@ -193,8 +203,7 @@ void NodeTree::addGpuInstances(size_t index, const Instance& prototype, const ti
     }
 }
 
-int NodeTree::addSkin(int index, const std::string& jsonPath) {
-    document_.checkIndex(index, skinOf_.size(), jsonPath, "skins");
+int NodeTree::addSkin(int index) {
     int& mapped = skinOf_[static_cast<size_t>(index)];
     if (mapped >= 0) return mapped;
     const tinygltf::Skin& source = document_.model().skins[static_cast<size_t>(index)];
@@ -227,7 +236,6 @@ void NodeTree::checkJoints(const Instance& instance, const std::string& jsonPath
 void NodeTree::addCamera(size_t index) {
     const tinygltf::Node& source = document_.model().nodes[index];
     if (source.camera < 0) return;
-    document_.checkIndex(source.camera, document_.model().cameras.size(), nodePath(index) + "/camera", "cameras");
     const tinygltf::Camera& camera = document_.model().cameras[static_cast<size_t>(source.camera)];
     SceneCamera placed;
     placed.node = nodeOf_[index];
@@ -247,9 +255,6 @@ void NodeTree::addLight(size_t index) {
     const auto* extension = extensionOf(document_.model().nodes[index].extensions, "KHR_lights_punctual");
     if (!extension) return;
     const int number = integerOf(*extension, "light", -1);
-    document_.checkIndex(number, document_.model().lights.size(),
-                         nodePath(index) + "/extensions/KHR_lights_punctual/light",
-                         "extensions/KHR_lights_punctual/lights");
     const tinygltf::Light& source = document_.model().lights[static_cast<size_t>(number)];
     Light light;
     light.name = !source.name.empty() ? source.name : "light-" + std::to_string(number);

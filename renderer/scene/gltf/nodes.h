@@ -27,11 +27,13 @@ private:
     std::vector<int> roots() const;
     void walk(int root, const std::string& rootPath);
     void addNode(int index, int parent);
+    /// Throws unless what a node refers to is there, wherever it stands: of joints outside the scene too.
+    void checkReferences(const tinygltf::Node& node, const std::string& path) const;
     void addInstances(size_t index);
     void addGpuInstances(size_t index, const Instance& prototype, const tinygltf::Value& extension);
     void addCamera(size_t index);
     void addLight(size_t index);
-    int addSkin(int index, const std::string& jsonPath);
+    int addSkin(int index);
     void checkJoints(const Instance& instance, const std::string& jsonPath) const;
 
     const Document& document_;
