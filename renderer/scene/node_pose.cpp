@@ -66,16 +66,34 @@ NodePose poseNodes(const Scene& scene, std::optional<float> time) {
 }
 
 Mat4 worldFromNodeAt(const Scene& scene, int node, std::optional<float> time) {
+    // Parents stand before their children: from the root down, the chain's indices ascend.
+    std::vector<int> chain;
+    for (int i = node; i >= 0; i = scene.nodes[static_cast<size_t>(i)].parent) chain.push_back(i);
+    std::reverse(chain.begin(), chain.end());
+    std::vector<Transform> locals(chain.size());
+    for (size_t i = 0; i < chain.size(); ++i) locals[i] = scene.nodes[static_cast<size_t>(chain[i])].local;
+    if (time)
+        for (const Animation& animation : scene.animations) {
+            const float local = localTime(animation, *time);
+            for (const AnimationChannel& channel : animation.channels)
+                if (const auto at = std::lower_bound(chain.begin(), chain.end(), channel.node);
+                    at != chain.end() && *at == channel.node)
+                    apply(channel, local, locals[static_cast<size_t>(at - chain.begin())], nullptr);
+        }
     Mat4 world(1);
-    for (int i = node; i >= 0; i = scene.nodes[static_cast<size_t>(i)].parent) {
-        Transform local = scene.nodes[static_cast<size_t>(i)].local;
-        if (time)
-            for (const Animation& animation : scene.animations)
-                for (const AnimationChannel& channel : animation.channels)
-                    if (channel.node == i) apply(channel, localTime(animation, *time), local, nullptr);
-        world = localMatrix(scene.nodes[static_cast<size_t>(i)], local) * world;
-    }
+    for (size_t i = 0; i < chain.size(); ++i)
+        world = world * localMatrix(scene.nodes[static_cast<size_t>(chain[i])], locals[i]);
     return world;
+}
+
+void placeAtNode(Camera& camera, const Mat4& worldFromNode) {
+    const float distance = glm::length(camera.target - camera.eye);
+    const Vec3 back(worldFromNode[2]), up(worldFromNode[1]);
+    const float length = glm::length(back), height = glm::length(up);
+    const Vec3 forward = length > 0 && std::isfinite(length) ? back * (-1 / length) : Vec3(0, 0, -1);
+    camera.eye = Vec3(worldFromNode[3]);
+    camera.target = camera.eye + forward * (distance > 0 ? distance : 1.0f);
+    camera.up = height > 0 && std::isfinite(height) ? glm::normalize(up) : Vec3(0, 1, 0);
 }
 
 std::vector<Mat4> jointMatrices(const Skin& skin, const NodePose& pose) {

@@ -15,8 +15,13 @@ struct NodePose {
 /// Evaluates all animations at `time` in seconds (looping ones wrap); no time gives the rest pose.
 NodePose poseNodes(const Scene& scene, std::optional<float> time);
 
-/// World matrix of one node alone: the chain of its ancestors.
+/// World matrix of one node alone: the chain of its ancestors. Looks at every channel once; for many nodes of one
+/// moment, poseNodes() does.
 Mat4 worldFromNodeAt(const Scene& scene, int node, std::optional<float> time);
+
+/// Stands a camera at its node: a rigid frame that looks along -Z, whatever the node's scale, with the camera's own
+/// distance to its target.
+void placeAtNode(Camera& camera, const Mat4& worldFromNode);
 
 /// `time` as an animation sees it: wrapped into [0, duration] if it loops.
 float localTime(const Animation& animation, float time);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "scene/material_textures.h"
+#include "scene/node_pose.h"
 #include "scene/pose_bounds.h"
 
 namespace lumi {
@@ -12,17 +13,6 @@ namespace {
 
 void addTexture(const Texture& texture, std::set<const TextureImage*>& images) {
     if (texture) images.insert(texture.image.get());
-}
-
-/// The camera of a node: a rigid frame, whatever the node's scale, with the rest pose's distance to the target.
-void placeAtNode(Camera& camera, const Mat4& worldFromNode) {
-    const float distance = glm::length(camera.target - camera.eye);
-    const Vec3 back(worldFromNode[2]), up(worldFromNode[1]);
-    const float length = glm::length(back), height = glm::length(up);
-    const Vec3 forward = length > 0 && std::isfinite(length) ? back * (-1 / length) : Vec3(0, 0, -1);
-    camera.eye = Vec3(worldFromNode[3]);
-    camera.target = camera.eye + forward * (distance > 0 ? distance : 1.0f);
-    camera.up = height > 0 && std::isfinite(height) ? glm::normalize(up) : Vec3(0, 1, 0);
 }
 
 /// Keys as animation channels, so that every curve in a scene is evaluated by one function.

@@ -13,6 +13,7 @@
 #include "scene/gltf/meshes.h"
 #include "scene/gltf/nodes.h"
 #include "scene/gltf/textures.h"
+#include "scene/node_pose.h"
 
 namespace lumi {
 namespace {
@@ -47,15 +48,14 @@ void dropUnusedDefault(Scene& scene) {
 void placeCameras(Scene& scene) {
     if (scene.cameras.empty()) return;
     const Bounds3 bounds = scene.restBounds();
-    for (size_t i = 0; i < scene.cameras.size(); ++i) {
-        Camera& camera = scene.cameras[i].camera;
-        const Camera rest = cameraAt(scene, static_cast<int>(i), 0);
-        const Vec3 forward = glm::normalize(rest.target - rest.eye);
-        float distance = bounds.empty() ? 1 : glm::dot(bounds.centre() - rest.eye, forward);
+    const NodePose pose = poseNodes(scene, 0.0f);
+    for (SceneCamera& placed : scene.cameras) {
+        Camera& camera = placed.camera;
+        placeAtNode(camera, pose.worldFromNode[static_cast<size_t>(placed.node)]);
+        const Vec3 forward = glm::normalize(camera.target - camera.eye);
+        float distance = bounds.empty() ? 1 : glm::dot(bounds.centre() - camera.eye, forward);
         if (!(distance > 1e-3f)) distance = std::max(1e-3f, bounds.empty() ? 1 : bounds.radius());
-        camera.eye = rest.eye;
-        camera.up = rest.up;
-        camera.target = rest.eye + forward * distance;
+        camera.target = camera.eye + forward * distance;
         camera.focus = distance;
     }
 }
