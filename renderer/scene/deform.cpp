@@ -39,6 +39,36 @@ void skinRange(const Mesh& mesh, std::span<const Mat4> joints, size_t begin, siz
     }
 }
 
+/// Two edges of a triangle, from its first corner.
+struct Edges {
+    Vec3 first, second;
+    Edges(const std::vector<Vec3>& p, const UVec3& t) : first(p[t.y] - p[t.x]), second(p[t.z] - p[t.x]) {}
+};
+
+/// A direction in the plane of the triangle at `rest` as the same mixture of its edges `now`; not unit.
+Vec3 carried(const Vec3& direction, const Edges& rest, const Edges& now) {
+    const float length = glm::length(rest.first) + glm::length(rest.second);
+    const Vec3 e = rest.first / length, f = rest.second / length;
+    const float ee = glm::dot(e, e), ef = glm::dot(e, f), ff = glm::dot(f, f);
+    const float a = glm::dot(e, direction), b = glm::dot(f, direction);
+    return (a * ff - b * ef) * now.first + (b * ee - a * ef) * now.second;
+}
+
+void flattenRange(const Mesh& mesh, size_t begin, size_t end, DeformedVertices& out) {
+    for (size_t i = begin; i < end; ++i) {
+        const UVec3& t = mesh.triangles[i];
+        if (!isFaceNormal(mesh.morphTargets[0].normals[t.x])) continue;
+        const Edges rest(mesh.positions, t), now(out.positions, t);
+        const Vec3 normal = unitOr(glm::cross(now.first, now.second), mesh.normals[t.x]);
+        for (int c = 0; c < 3; ++c) {
+            out.normals[t[c]] = normal;
+            if (out.tangents.empty()) continue;
+            const Vec3 tangent(mesh.tangents[t[c]]);
+            out.tangents[t[c]] = unitOr(carried(tangent, rest, now), tangent);
+        }
+    }
+}
+
 }  // namespace
 
 DeformedVertices deform(const Mesh& mesh, std::span<const float> weights, std::span<const Mat4> joints) {
@@ -48,6 +78,10 @@ DeformedVertices deform(const Mesh& mesh, std::span<const float> weights, std::s
             morphRange(mesh, weights, static_cast<size_t>(begin), static_cast<size_t>(end), out);
         if (!joints.empty()) skinRange(mesh, joints, static_cast<size_t>(begin), static_cast<size_t>(end), out);
     });
+    if (!mesh.morphTargets.empty() && !mesh.morphTargets[0].normals.empty() && !out.normals.empty())
+        parallelRanges(static_cast<int64_t>(mesh.triangles.size()), kGrain, [&](int64_t begin, int64_t end) {
+            flattenRange(mesh, static_cast<size_t>(begin), static_cast<size_t>(end), out);
+        });
     return out;
 }
 

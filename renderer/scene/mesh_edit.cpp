@@ -25,10 +25,17 @@ void forEachAttribute(M& mesh, const Visit& visit) {
     }
 }
 
+/// Where an appended mesh's vertices go: after `before` others, `count` of them, `total` in the end.
+struct Place {
+    size_t before, count, total;
+};
+
 /// Appends `from` to `to`, filling whichever is absent with `fill` if the merged mesh has the attribute at all.
 template <class T>
-void append(std::vector<T>& to, size_t before, const std::vector<T>& from, size_t count, const T& fill) {
+void append(std::vector<T>& to, const Place& place, const std::vector<T>& from, const T& fill) {
     if (to.empty() && from.empty()) return;
+    const auto [before, count, total] = place;
+    to.reserve(total);
     to.resize(before, fill);
     if (from.empty()) to.resize(before + count, fill);
     else to.insert(to.end(), from.begin(), from.end());
@@ -52,23 +59,24 @@ void appendSkin(SkinWeights& to, size_t before, const SkinWeights& from, size_t 
     to.weight.insert(to.weight.end(), from.weight.begin(), from.weight.end());
 }
 
-void appendMesh(Mesh& to, const Mesh& from) {
+void appendMesh(Mesh& to, const Mesh& from, size_t total) {
     const size_t before = to.positions.size(), count = from.positions.size();
-    append(to.normals, before, from.normals, count, Vec3(0, 1, 0));
-    append(to.tangents, before, from.tangents, count, Vec4(1, 0, 0, 1));
-    append(to.uv[0], before, from.uv[0], count, Vec2(0));
-    append(to.uv[1], before, from.uv[1], count, Vec2(0));
-    append(to.colours, before, from.colours, count, Vec4(1));
+    const Place place{before, count, total};
+    append(to.normals, place, from.normals, Vec3(0, 1, 0));
+    append(to.tangents, place, from.tangents, Vec4(1, 0, 0, 1));
+    append(to.uv[0], place, from.uv[0], Vec2(0));
+    append(to.uv[1], place, from.uv[1], Vec2(0));
+    append(to.colours, place, from.colours, Vec4(1));
     to.morphTargets.resize(std::max(to.morphTargets.size(), from.morphTargets.size()));
     for (size_t t = 0; t < to.morphTargets.size(); ++t) {
         static const MorphTarget kNone;
         const MorphTarget& target = t < from.morphTargets.size() ? from.morphTargets[t] : kNone;
-        append(to.morphTargets[t].positions, before, target.positions, count, Vec3(0));
-        append(to.morphTargets[t].normals, before, target.normals, count, Vec3(0));
-        append(to.morphTargets[t].tangents, before, target.tangents, count, Vec3(0));
+        append(to.morphTargets[t].positions, place, target.positions, Vec3(0));
+        append(to.morphTargets[t].normals, place, target.normals, Vec3(0));
+        append(to.morphTargets[t].tangents, place, target.tangents, Vec3(0));
     }
     appendSkin(to.skin, before, from.skin, count);
-    to.positions.insert(to.positions.end(), from.positions.begin(), from.positions.end());
+    append(to.positions, place, from.positions, Vec3(0));
     for (size_t i = 0; i < from.triangles.size(); ++i) {
         to.triangles.push_back(from.triangles[i] + UVec3(static_cast<uint32_t>(before)));
         to.triangleMaterial.push_back(from.materialOf(static_cast<uint32_t>(i)));
@@ -133,7 +141,17 @@ Mesh mergeMeshes(std::vector<Mesh> parts) {
     assert(!parts.empty());
     Mesh merged = std::move(parts.front());
     if (merged.triangleMaterial.empty()) merged.triangleMaterial.resize(merged.triangles.size(), merged.material);
-    for (size_t i = 1; i < parts.size(); ++i) appendMesh(merged, parts[i]);
+    size_t vertices = merged.positions.size(), triangles = merged.triangles.size();
+    for (size_t i = 1; i < parts.size(); ++i) {
+        vertices += parts[i].positions.size();
+        triangles += parts[i].triangles.size();
+    }
+    merged.triangles.reserve(triangles);
+    merged.triangleMaterial.reserve(triangles);
+    for (size_t i = 1; i < parts.size(); ++i) {
+        appendMesh(merged, parts[i], vertices);
+        parts[i] = Mesh();  // both never stand in memory whole
+    }
     // One material for all triangles needs no table.
     const std::vector<uint32_t>& table = merged.triangleMaterial;
     if (std::all_of(table.begin(), table.end(), [&](uint32_t m) { return m == table.front(); })) {

@@ -168,6 +168,35 @@ TEST_F(Robustness, Cages) {
     write("scene.json", test::kCageScene);
     mutateScene("cage.obj", test::kCage, true, 14000000, "scene.json");
 }
+/// Good files of very many things: what they take to open grows with them, not with their square.
+TEST_F(Robustness, VeryManyThingsOfAKind) {
+    using nlohmann::json;
+    test::GltfBuilder cameras;
+    cameras.triangle();
+    const int times = cameras.floats({0, 1}, "SCALAR", 1), values = cameras.floats({0, 0, 0, 0, 0, 0}, "VEC3", 3);
+    cameras.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}}};
+    cameras.json["animations"] = {{{"samplers", {{{"input", times}, {"output", values}}}}}};
+    constexpr int kCameras = 8000;
+    for (int i = 0; i < kCameras; ++i) {
+        cameras.json["nodes"][static_cast<size_t>(i)] = {{"camera", 0}, {"children", {i + 1}}};
+        cameras.json["animations"][0]["channels"].push_back(
+            {{"sampler", 0}, {"target", {{"node", i}, {"path", "translation"}}}});
+    }
+    cameras.json["nodes"].push_back({{"mesh", 0}});
+    tryScene("cameras.gltf", test::asText(cameras), 0);
+
+    test::GltfBuilder primitives;
+    primitives.triangle();
+    const json good = primitives.primitive();
+    constexpr int kPrimitives = 60000;
+    for (int i = 0; i < kPrimitives; ++i) {
+        json other = good;
+        other["attributes"]["_" + std::to_string(i)] = 0;
+        primitives.json["meshes"][0]["primitives"].push_back(std::move(other));
+    }
+    tryScene("primitives.gltf", test::asText(primitives), 0);
+    EXPECT_EQ(accepted_, 2);
+}
 /// Each file in turn is taken away, or becomes a folder, when loading tells of its first step, its second and so on.
 TEST_F(Robustness, FilesThatVanishWhileLoading) {
     test::GltfBuilder rich;

@@ -182,7 +182,6 @@ private:
         material_.transmission = 0;
         material_.clearcoat = material_.anisotropy = material_.iridescence = 0;
         material_.sheenColor = Vec3(0);
-        material_.doubleSided = true;
     }
 
     const Document& document_;

@@ -1,10 +1,14 @@
 #include "scene/gltf/meshes.h"
 
 #include <algorithm>
-#include <numeric>
+#include <map>
+#include <tuple>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/parallel.h"
+#include "scene/deform.h"
+#include "scene/gltf/counts.h"
 #include "scene/gltf/primitive.h"
 #include "scene/gltf/values.h"
 #include "scene/mesh_edit.h"
@@ -73,6 +77,9 @@ public:
         std::erase_if(parts_, [](const Mesh& part) { return part.triangles.empty(); });
         if (parts_.empty()) return nullptr;
         finish();
+        uint64_t merged = 0;
+        for (size_t p = 1; p < parts_.size(); ++p) merged += parts_[p].byteCount();
+        if (merged > 0) checkMemory("joining the primitives of " + path_, merged);
         auto mesh = std::make_shared<Mesh>(mergeMeshes(std::move(parts_)));
         mesh->name = source_.name;
         checkMesh(*mesh, document_.path().filename().string() + ": " + path_);
@@ -80,6 +87,20 @@ public:
     }
 
 private:
+    /// Whose vertices a part holds: equal where primitives have the same attributes and targets.
+    struct Source {
+        const tinygltf::Primitive* primitive;
+        UvSets uvSets;
+        bool operator<(const Source& other) const {
+            return std::tie(primitive->attributes, primitive->targets, uvSets) <
+                   std::tie(other.primitive->attributes, other.primitive->targets, other.uvSets);
+        }
+    };
+    struct Shared {
+        size_t index;  ///< into parts_
+        int tangents;  ///< the set that generated tangents follow; -1: none needed
+    };
+
     /// Primitives over the same vertices share them.
     void addPrimitive(size_t p) {
         document_.pollStop();
@@ -92,26 +113,32 @@ private:
         const UvSets& uvSets = uvSets_[static_cast<size_t>(material)];
 
         const std::unique_ptr<const DracoMesh> draco = decodeDraco(document_, primitive, path);
-        const bool hasTangents = primitive.attributes.contains("TANGENT");
+        const bool hasTangents = primitive.attributes.contains("NORMAL") && primitive.attributes.contains("TANGENT");
         const int tangents = hasTangents ? -1 : tangentSet(materials_[static_cast<size_t>(material)]);
-        const auto sharesVertices = [&](const Source& other) {
-            return other.primitive && other.primitive->attributes == primitive.attributes &&
-                   other.primitive->targets == primitive.targets && other.uvSets == uvSets &&
-                   (other.tangents == tangents || other.tangents < 0 || tangents < 0);
-        };
-        const auto known = std::find_if(sources_.begin(), sources_.end(), sharesVertices);
-        const auto part = draco ? sources_.size() : static_cast<size_t>(known - sources_.begin());
-        if (part == sources_.size()) {
-            sources_.push_back({draco ? nullptr : &primitive, uvSets, tangents});
-            parts_.push_back(readVertices(document_, primitive, draco.get(), uvSets, path));
-        }
-        sources_[part].tangents = std::max(sources_[part].tangents, tangents);
+        size_t part = draco ? parts_.size() : partOver({&primitive, uvSets}, tangents);
+        if (part == parts_.size()) parts_.push_back(readVertices(document_, primitive, draco.get(), uvSets, path));
         if (parts_[part].positions.empty()) return;
         const std::vector<UVec3> triangles =
             readTriangles(document_, primitive, draco.get(), parts_[part].positions.size(), path);
         Mesh& mesh = parts_[part];
+        const size_t needed = mesh.triangles.size() + triangles.size();
+        if (needed > mesh.triangles.capacity())
+            checkMemory("the geometry of " + path, std::max(needed, 2 * mesh.triangles.size()) * kTriangleBytes);
         mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
         mesh.triangleMaterial.resize(mesh.triangles.size(), static_cast<uint32_t>(material));
+    }
+
+    /// The part that holds these vertices, if its tangents may follow the set `tangents` too (-1: it needs none); else
+    /// the next new one.
+    size_t partOver(const Source& source, int tangents) {
+        std::vector<Shared>& known = sharedParts_[source];
+        for (Shared& part : known)
+            if (part.tangents == tangents || part.tangents < 0 || tangents < 0) {
+                part.tangents = std::max(part.tangents, tangents);
+                return part.index;
+            }
+        known.push_back({parts_.size(), tangents});
+        return parts_.size();
     }
 
     /// Also of the variants that are not chosen: a file is wrong or right whatever is asked of it.
@@ -135,8 +162,11 @@ private:
             anyNormals |= !part.normals.empty();
         }
         for (Mesh& part : parts_) {
-            // glTF: without normals, faces are flat.
-            if (part.normals.empty() && (anyNormals || anyTangents)) makeFlat(part);
+            // glTF: without normals, faces are flat, and stay so when they bend.
+            if (part.normals.empty() && (anyNormals || anyTangents)) {
+                makeFlat(part);
+                if (!part.morphTargets.empty()) part.morphTargets[0].normals.assign(part.positions.size(), kFaceNormal);
+            }
             if (anyTangents && part.tangents.empty()) computeTangents(part, std::max(tangentSetOf(part), 0));
         }
     }
@@ -150,20 +180,13 @@ private:
         return set;
     }
 
-    /// Whose vertices a part holds; without a primitive they are for its own triangles alone.
-    struct Source {
-        const tinygltf::Primitive* primitive;
-        UvSets uvSets;
-        int tangents;  ///< the set that generated tangents follow; -1: none needed
-    };
-
     const Document& document_;
     const std::vector<Material>& materials_;
     const std::vector<UvSets>& uvSets_;
     int variant_;
     tinygltf::Mesh source_;
     std::string path_;
-    std::vector<Source> sources_;
+    std::map<Source, std::vector<Shared>> sharedParts_;
     std::vector<Mesh> parts_;
 };
 

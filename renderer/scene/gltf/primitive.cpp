@@ -150,6 +150,11 @@ Mesh readVertices(const Document& document, const tinygltf::Primitive& primitive
     for (const std::map<std::string, int>& target : primitive.targets)
         mesh.morphTargets.push_back({targets.read<Vec3>(target, "POSITION"), targets.read<Vec3>(target, "NORMAL"),
                                      targets.read<Vec3>(target, "TANGENT")});
+    // glTF: without normals, faces are flat, and tangents do not count.
+    if (mesh.normals.empty()) {
+        mesh.tangents.clear();
+        for (MorphTarget& target : mesh.morphTargets) target.normals.clear(), target.tangents.clear();
+    }
     if (const size_t i = firstOutOfReach(mesh.positions); i < mesh.positions.size())
         document.fail(where + "/POSITION", "the position of vertex " + std::to_string(i) + " is out of range",
                       reachText(), outOfReachText(mesh.positions[i]));
