@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 #include <set>
+#include <string_view>
 
 #include "base/error.h"
 #include "scene/obj/number_check.h"
@@ -57,6 +58,25 @@ bool applyTag(const tinyobj::tag_t& tag, SubdivisionCage& cage) {
     return true;
 }
 
+/// Those that applyTag() knows, and hierarchical edits, which a cage alone has too.
+bool isTagName(std::string_view name) {
+    constexpr std::string_view kNames[] = {
+        "crease",     "corner",   "hole",     "interpolateboundary", "facevaryinginterpolateboundary", "creasemethod",
+        "vertexedit", "edgeedit", "faceedit", "smoothtriangles"};
+    return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
+}
+
+/// "#t crease 2/1/0 ...", and no sentence of a comment: a tag's name and then how many numbers follow.
+bool isCommentedTag(std::string_view line) {
+    if (!line.starts_with("#t ")) return false;
+    line.remove_prefix(3);
+    const size_t end = line.find_first_of(" \t");
+    if (end == line.npos || !isTagName(line.substr(0, end))) return false;
+    line.remove_prefix(line.find_first_not_of(" \t", end) == line.npos ? line.size()
+                                                                       : line.find_first_not_of(" \t", end));
+    return !line.empty() && line[0] >= '0' && line[0] <= '9';
+}
+
 void addFaces(const tinyobj::mesh_t& mesh, uint32_t fallbackMaterial, const std::string& where, SubdivisionCage& cage) {
     // tinyobj keeps a face's number of corners in a byte, which larger faces overflow.
     const uint64_t corners = std::accumulate(mesh.num_face_vertices.begin(), mesh.num_face_vertices.end(), uint64_t(0));
@@ -84,14 +104,26 @@ bool everyCornerHasUv(const std::vector<tinyobj::shape_t>& shapes) {
 
 void uncommentTags(std::string& text) {
     for (size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) {
-        if (text.compare(at, 3, "#t ") == 0) text[at] = ' ';
-        if (text.find('\n', at) == std::string::npos) break;
+        const size_t end = std::min(text.find('\n', at), text.size());
+        if (isCommentedTag(std::string_view(text).substr(at, end - at))) text[at] = ' ';
+        if (end == text.size()) break;
     }
 }
 
 bool hasTags(const std::vector<tinyobj::shape_t>& shapes) {
-    return std::any_of(shapes.begin(), shapes.end(),
-                       [](const tinyobj::shape_t& shape) { return !shape.mesh.tags.empty(); });
+    return std::any_of(shapes.begin(), shapes.end(), [](const tinyobj::shape_t& shape) {
+        return std::any_of(shape.mesh.tags.begin(), shape.mesh.tags.end(),
+                           [](const tinyobj::tag_t& tag) { return isTagName(tag.name); });
+    });
+}
+
+void warnOfOtherTags(const std::vector<tinyobj::shape_t>& shapes, const std::string& where, MessageLog& log) {
+    std::set<std::string> names;
+    SubdivisionCage none;
+    for (const tinyobj::shape_t& shape : shapes)
+        for (const tinyobj::tag_t& tag : shape.mesh.tags)
+            if (!applyTag(tag, none) && names.insert(tag.name).second)
+                log.warning(fmt::format("{}: the subdivision tag \"{}\" is not known and left out", where, tag.name));
 }
 
 SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<tinyobj::shape_t>& shapes,
@@ -101,13 +133,11 @@ SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<ti
     cage.boundary = SubdivisionCage::Boundary::EdgeOnly;
     for (size_t i = 0; i + 2 < attributes.vertices.size(); i += 3)
         cage.positions.emplace_back(attributes.vertices[i], attributes.vertices[i + 1], attributes.vertices[i + 2]);
-    std::set<std::string> unknown;
     for (const tinyobj::shape_t& shape : shapes) {
         addFaces(shape.mesh, fallbackMaterial, where, cage);
-        for (const tinyobj::tag_t& tag : shape.mesh.tags)
-            if (!applyTag(tag, cage) && unknown.insert(tag.name).second)
-                log.warning(fmt::format("{}: the subdivision tag \"{}\" is not known and left out", where, tag.name));
+        for (const tinyobj::tag_t& tag : shape.mesh.tags) applyTag(tag, cage);
     }
+    warnOfOtherTags(shapes, where, log);
     if (cage.faceSizes.empty()) throwBadInput({"holds no faces", where, "a polygon cage", ""});
     cage.material = cage.faceMaterials.front();
     if (std::count(cage.faceMaterials.begin(), cage.faceMaterials.end(), cage.material) ==

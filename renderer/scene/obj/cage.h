@@ -9,11 +9,14 @@
 
 namespace lumi {
 
-/// `#t` at the beginning of a line becomes ` t`: files that keep OpenSubdiv's tags as comments.
+/// `#t` at the beginning of a line becomes ` t` before a tag that is known: files that keep OpenSubdiv's as comments.
 void uncommentTags(std::string& objText);
 
-/// True if a shape has a tag.
+/// True if a shape has a tag that is known: the file means a subdivision surface.
 bool hasTags(const std::vector<tinyobj::shape_t>& shapes);
+
+/// Warns, once for each name, of tags that nothing is made of.
+void warnOfOtherTags(const std::vector<tinyobj::shape_t>& shapes, const std::string& where, MessageLog& log);
 
 /// All shapes of an OBJ as one subdivision cage: faces as they are, with OpenSubdiv's `t` tag lines (crease, corner,
 /// hole, interpolateboundary, facevaryinginterpolateboundary, creasemethod, smoothtriangles). Other tags are warnings;

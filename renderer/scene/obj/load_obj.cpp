@@ -84,6 +84,11 @@ ParsedObj parse(const std::filesystem::path& path, MessageLog& log) {
     std::istringstream warnings(warning);
     for (std::string line; std::getline(warnings, line);)
         if (!line.empty()) log.warning(where + ": " + line);
+    const auto isMore = [](const tinyobj::shape_t& shape) {
+        return !shape.lines.indices.empty() || !shape.points.indices.empty();
+    };
+    if (std::any_of(parsed.shapes.begin(), parsed.shapes.end(), isMore))
+        log.warning(where + ": lines and points are not drawn");
     return parsed;
 }
 
@@ -92,7 +97,10 @@ ParsedObj parse(const std::filesystem::path& path, MessageLog& log) {
 std::shared_ptr<Mesh> limitSurface(const ParsedObj& parsed, const Subdivision& subdivision, uint32_t fallback,
                                    const std::string& where, MessageLog& log, const std::stop_token& stop) {
     const bool asked = subdivision.scheme == SubdivisionScheme::CatmullClark;
-    if (!asked && (subdivision.scheme == SubdivisionScheme::None || !hasTags(parsed.shapes))) return nullptr;
+    if (!asked && (subdivision.scheme == SubdivisionScheme::None || !hasTags(parsed.shapes))) {
+        if (subdivision.scheme != SubdivisionScheme::None) warnOfOtherTags(parsed.shapes, where, log);
+        return nullptr;
+    }
     try {
         const SubdivisionCage cage = cageOf(parsed.attributes, parsed.shapes, fallback, where, log);
         auto mesh = std::make_shared<Mesh>(tessellate(cage, subdivision.rate, where, stop).mesh);
@@ -149,6 +157,7 @@ Scene loadObj(const std::filesystem::path& path, MessageLog& log, const LoadOpti
     Scene scene;
     scene.title = path.stem().string();
     scene.path = path.string();
+    warnOfOtherTextures(parsed.materials, where, log);
     scene.materials = convertMaterials(parsed.materials, images, options.stop);
 
     step(0.7f, "Building meshes");

@@ -115,4 +115,19 @@ std::vector<Material> convertMaterials(const std::vector<tinyobj::material_t>& s
     return materials;
 }
 
+void warnOfOtherTextures(const std::vector<tinyobj::material_t>& sources, const std::string& where, MessageLog& log) {
+    using Name = std::string tinyobj::material_t::*;
+    constexpr std::pair<Name, const char*> kLeftOut[] = {{&tinyobj::material_t::specular_texname, "map_Ks"},
+                                                         {&tinyobj::material_t::specular_highlight_texname, "map_Ns"},
+                                                         {&tinyobj::material_t::sheen_texname, "map_Ps"},
+                                                         {&tinyobj::material_t::reflection_texname, "refl"},
+                                                         {&tinyobj::material_t::displacement_texname, "disp"}};
+    for (const auto& [name, keyword] : kLeftOut) {
+        const auto isNamed = [&, member = name](const tinyobj::material_t& m) { return !(m.*member).empty(); };
+        const auto first = std::find_if(sources.begin(), sources.end(), isNamed);
+        if (first != sources.end())
+            log.warning(where + ": textures of " + keyword + " are left out, as that of \"" + first->name + '"');
+    }
+}
+
 }  // namespace lumi

@@ -12,4 +12,7 @@ namespace lumi {
 std::vector<Material> convertMaterials(const std::vector<tinyobj::material_t>& sources, ObjImages& images,
                                        std::stop_token stop);
 
+/// Warns, once for each kind, of textures that no material is made of. Not of map_Ka: there is no ambient light.
+void warnOfOtherTextures(const std::vector<tinyobj::material_t>& sources, const std::string& where, MessageLog& log);
+
 }  // namespace lumi

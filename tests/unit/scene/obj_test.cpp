@@ -129,6 +129,19 @@ TEST(Obj, MissingFilesAreWarnings) {
     EXPECT_FALSE(scene.materials[0].baseColorTexture);
 }
 
+TEST(Obj, WhatIsLeftOutIsSaidOnce) {
+    MessageLog log;
+    loadText("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl m\nf 1 2 3\nl 1 2\np 1\nl 2 3\n", log,
+             "newmtl m\nKd 1 1 1\nmap_Ka a.png\nmap_Ks b.png\nmap_Ns c.png\nrefl d.png\ndisp e.png\n"
+             "newmtl n\nmap_Ks f.png\nmap_Ps g.png\n");
+    const std::vector<std::string> warnings = log.warnings();
+    ASSERT_EQ(warnings.size(), 6u);
+    EXPECT_EQ(warnings[0], "a.obj: lines and points are not drawn");
+    EXPECT_EQ(warnings[1], "a.obj: textures of map_Ks are left out, as that of \"m\"");
+    EXPECT_EQ(warnings[3], "a.obj: textures of map_Ps are left out, as that of \"n\"");
+    EXPECT_NE(warnings[5].find("disp"), std::string::npos);
+}
+
 TEST(Obj, NumbersThatAreNoneAreRefusedOrCleanedWithTheirLine) {
     const char* rest = "v 1 0 0\nv 0 1 0\nf 1 2 3\n";
     for (const auto& [line, found] : {std::pair("v 1 nan x", "nan"),
@@ -197,6 +210,17 @@ TEST(ObjCage, TellsOfTagsThatItLeavesOut) {
     loadText(kTwoFaces + "t creese 2/1/0 0 1 3\nt creese 2/1/0 1 2 3\n", log, kRedAndGreen);
     ASSERT_EQ(log.warnings().size(), 1u);
     EXPECT_NE(log.warnings()[0].find("creese"), std::string::npos);
+}
+
+TEST(ObjCage, CommentsAreNoTags) {
+    const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+    for (const char* comment : {"#t he model, made by me\n", "#t corner of the room\n", "#t crease\n", "#t hole \n"}) {
+        MessageLog log;
+        EXPECT_EQ(loadText(comment + square, log).triangleCount(), 2) << comment;
+        EXPECT_EQ(loadText(square + comment, log).triangleCount(), 2) << comment;
+        EXPECT_TRUE(log.warnings().empty());
+    }
+    EXPECT_GT(loadText(square + "#t interpolateboundary 1/0/0 1\n").triangleCount(), 2);
 }
 
 TEST(ObjCage, WithoutALimitSurfaceItsPolygonsAreShown) {
