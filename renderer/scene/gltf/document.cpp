@@ -50,6 +50,12 @@ bool isSupported(const std::string& extension) {
     return in(kSupportedExtensions) || in(kStandInExtensions);
 }
 
+bool isData(const std::string& uri) { return uri.starts_with("data:"); }
+/// Of data their kind alone.
+std::string shortened(const std::string& uri) {
+    return isData(uri) && uri.size() > 40 ? uri.substr(0, 40) + "..." : uri;
+}
+
 std::string firstLine(const std::string& text) { return text.substr(0, text.find_first_of("\r\n")); }
 
 tinygltf::FsCallbacks callbacksFor(Document& document) {
@@ -104,7 +110,7 @@ void Document::parse(std::span<const uint8_t> file) {
     uint64_t bytes = 0;
     const JsonSummary summary = inspectJson(json, name_);
     checkRequiredExtensions(summary.requiredExtensions);
-    bool needsPatch = summary.hasDraco;
+    bool needsPatch = summary.hasDraco || summary.hasOtherData;
     for (const JsonSummary::Buffer& buffer : summary.buffers) {
         needsPatch |= buffer.isFallback;
         if (buffer.isFallback) continue;
@@ -130,7 +136,7 @@ void Document::parse(std::span<const uint8_t> file) {
                                           static_cast<unsigned int>(text.size()), kFolder);
     }();
     if (!good && !missingFile_.empty() && error.find("File not found") != error.npos)
-        throwBadInput({.what = "the buffer file " + missingFile_, .where = name_});
+        throwBadInput({.what = missingFile_, .where = name_});
     if (!good) throwBadInput({.what = "damaged glTF: " + firstLine(error), .where = name_});
 
     checkVersion();
@@ -138,7 +144,7 @@ void Document::parse(std::span<const uint8_t> file) {
     for (size_t i = 0; i < images_.size(); ++i) {
         const tinygltf::Image& image = model_.images[i];
         images_[i].bufferView = image.bufferView;
-        images_[i].name = !image.uri.empty()    ? image.uri
+        images_[i].name = !image.uri.empty()    ? shortened(image.uri)
                           : !image.name.empty() ? image.name
                                                 : "image " + std::to_string(i);
     }
@@ -221,9 +227,12 @@ std::filesystem::path Document::resolve(const std::string& uri) const {
 bool Document::fileExists(const std::string& tinygltfPath) {
     if (!tinygltfPath.starts_with(kFolder + "/")) return false;
     const std::string uri = tinygltfPath.substr(kFolder.size() + 1);
-    const std::string shown = '"' + uri.substr(0, 200) + '"';
+    if (isData(uri)) {
+        missingFile_ = "a buffer has an unsupported kind of data URI, \"" + shortened(uri) + '"';
+        return false;
+    }
+    const std::string shown = "the buffer file \"" + uri.substr(0, 200) + '"';
     missingFile_ = shown + " does not exist";
-    if (uri.starts_with("data:")) return false;
     std::error_code ignored;
     const std::filesystem::file_status status = std::filesystem::status(resolve(uri), ignored);
     if (std::filesystem::is_directory(status)) missingFile_ = shown + " is a directory";

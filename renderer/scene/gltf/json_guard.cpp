@@ -1,5 +1,8 @@
 #include "scene/gltf/json_guard.h"
 
+#include <fmt/format.h>
+#include <tiny_gltf.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -26,6 +29,32 @@ Json* extensionIn(Json& object, const char* name) {
     return extensions ? objectIn(*extensions, name) : nullptr;
 }
 
+/// Where the base64 begins in a data URI that tinygltf takes for a file, since it does not know the kind; else 0.
+size_t otherDataAt(const std::string& uri) {
+    constexpr std::string_view kEnd = ";base64,";
+    if (!uri.starts_with("data:")) return 0;
+    const size_t comma = uri.find(',');
+    if (comma == uri.npos) return 0;
+    const std::string head = uri.substr(0, comma + 1);
+    return head.ends_with(kEnd) && !tinygltf::IsDataURI(head) ? head.size() : 0;
+}
+
+void nameKind(Json& owner) {
+    if (!owner.is_object() || !owner.contains("uri") || !owner["uri"].is_string()) return;
+    auto& uri = owner["uri"].get_ref<std::string&>();
+    if (const size_t data = otherDataAt(uri); data > 0) uri.replace(0, data, "data:application/octet-stream;base64,");
+}
+
+/// Bytes beyond ASCII as \xNN: what the parser cites ends where it is no UTF-8.
+std::string printable(const std::string& text) {
+    std::string shown;
+    for (const char c : text)
+        if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte >= 0x7f)
+            shown += fmt::format("\\x{:02x}", byte);
+        else shown += c;
+    return shown;
+}
+
 /// Follows the parser's events; keeps only what JsonSummary asks for. Every event returns whether to go on.
 class Guard final : public nlohmann::json_sax<Json> {
 public:
@@ -46,6 +75,8 @@ public:
     bool number_float(number_float_t, const string_t&) override { return true; }
     bool string(string_t& value) override {
         if (depth_ == 2 && section_ == "extensionsRequired") summary.requiredExtensions.push_back(value);
+        summary.hasOtherData |=
+            depth_ == 3 && (section_ == "buffers" || section_ == "images") && key_ == "uri" && otherDataAt(value) > 0;
         if (inBuffer() && key_ == "uri") {
             summary.buffers.back().hasUri = !value.empty();
             summary.buffers.back().external = !value.empty() && !value.starts_with("data:");
@@ -77,7 +108,7 @@ public:
         std::string what = error.what();
         if (const size_t text = what.find("syntax error"); text != what.npos) what = what.substr(text);
         throwBadInput(
-            {.what = "not valid JSON: " + what,
+            {.what = "not valid JSON: " + printable(what),
              .where = where_ + ":" + std::to_string(line) + ":" + std::to_string(before.size() - lineStart + 1)});
     }
 
@@ -109,11 +140,13 @@ std::string readableByTinygltf(std::string_view json) {
         for (Json& entry : parent[name]) visit(entry);
     };
     each(tree, "buffers", [](Json& buffer) {
+        nameKind(buffer);
         const Json* meshopt = extensionIn(buffer, kMeshopt);
         if (!meshopt || !meshopt->contains("fallback") || (*meshopt)["fallback"] != true) return;
         buffer["uri"] = "data:application/octet-stream;base64,AA==";
         buffer["byteLength"] = 1;
     });
+    each(tree, "images", nameKind);
     each(tree, "meshes", [&](Json& mesh) {
         each(mesh, "primitives", [](Json& primitive) {
             Json* draco = extensionIn(primitive, kDraco);

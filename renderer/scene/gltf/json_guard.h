@@ -16,6 +16,7 @@ struct JsonSummary {
     };
     std::vector<Buffer> buffers;                  ///< in document order
     bool hasDraco = false;                        ///< some primitive is under KHR_draco_mesh_compression
+    bool hasOtherData = false;                    ///< a data URI whose kind tinygltf does not know, or that names none
     std::vector<std::string> requiredExtensions;  ///< "extensionsRequired"
 };
 
@@ -23,7 +24,8 @@ struct JsonSummary {
 inline constexpr int kMaxJsonDepth = 128;
 
 /// The JSON in a form that tinygltf accepts: every fallback buffer is one byte long and embedded, so that nothing is
-/// read for it; the indices of Draco primitives, which tinygltf wants bytes for, stand in their extension.
+/// read for it; data URIs in base64 of other kinds than tinygltf knows, or of none [RFC 2397], are bytes; the indices of
+/// Draco primitives, which tinygltf wants bytes for, stand in their extension.
 std::string readableByTinygltf(std::string_view json);
 
 /// Reads through the JSON without building a tree and without recursion. Throws Error(BadInput): a syntax error (with

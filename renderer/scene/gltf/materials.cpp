@@ -76,10 +76,17 @@ private:
         material_.emission = glm::max(vec3From(source_.emissiveFactor, Vec3(0)), Vec3(0));
         material_.emissionTexture = core(source_.emissiveTexture, "emissiveTexture", TextureUse::Colour);
         material_.doubleSided = source_.doubleSided;
-        material_.alphaMode = source_.alphaMode == "MASK"    ? AlphaMode::Mask
-                              : source_.alphaMode == "BLEND" ? AlphaMode::Blend
-                                                             : AlphaMode::Opaque;
+        material_.alphaMode = alphaMode();
         material_.alphaCutoff = std::max(0.0f, static_cast<float>(source_.alphaCutoff));
+    }
+
+    AlphaMode alphaMode() const {
+        if (source_.alphaMode == "MASK") return AlphaMode::Mask;
+        if (source_.alphaMode == "BLEND") return AlphaMode::Blend;
+        if (source_.alphaMode != "OPAQUE")
+            document_.fail(path_ + "/alphaMode", "no such mode", "OPAQUE, MASK or BLEND",
+                           '"' + source_.alphaMode.substr(0, 40) + '"');
+        return AlphaMode::Opaque;
     }
 
     void readIor(const tinygltf::Value& extension) {

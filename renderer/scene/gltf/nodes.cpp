@@ -1,5 +1,7 @@
 #include "scene/gltf/nodes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,6 +20,13 @@ std::string nodePath(size_t index) { return "/nodes/" + std::to_string(index); }
 template <class Things>
 void makeRoom(Things& things, size_t more) {
     if (things.capacity() - things.size() < more) things.reserve(things.size() + std::max(more, things.size() / 2));
+}
+
+/// A number, or the nearest to it from `least` to `most`, with a warning.
+float within(const Document& document, double number, float least, float most, const std::string& path) {
+    const float given = static_cast<float>(number), taken = std::clamp(given, least, most);
+    if (taken != given) document.warn(fmt::format("{}: {:.4g} is out of range; {:.4g} is taken", path, given, taken));
+    return taken;
 }
 
 }  // namespace
@@ -237,6 +246,7 @@ void NodeTree::addCamera(size_t index) {
     const tinygltf::Node& source = document_.model().nodes[index];
     if (source.camera < 0) return;
     const tinygltf::Camera& camera = document_.model().cameras[static_cast<size_t>(source.camera)];
+    const std::string path = "/cameras/" + std::to_string(source.camera);
     SceneCamera placed;
     placed.node = nodeOf_[index];
     placed.camera.name = !camera.name.empty()   ? camera.name
@@ -244,9 +254,10 @@ void NodeTree::addCamera(size_t index) {
                                                 : "camera-" + std::to_string(source.camera);
     if (camera.type == "orthographic") {
         placed.camera.projection = Projection::Orthographic;
-        placed.camera.yMag = std::max(1e-4f, std::abs(static_cast<float>(camera.orthographic.ymag)));
+        placed.camera.yMag = within(document_, camera.orthographic.ymag, 1e-4f, 1e9f, path + "/orthographic/ymag");
     } else {
-        placed.camera.fovYDeg = std::clamp(degrees(static_cast<float>(camera.perspective.yfov)), 1.0f, 170.0f);
+        placed.camera.fovYDeg =
+            degrees(within(document_, camera.perspective.yfov, radians(1), radians(170), path + "/perspective/yfov"));
     }
     scene_.cameras.push_back(std::move(placed));
 }

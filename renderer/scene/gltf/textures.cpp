@@ -16,12 +16,21 @@ namespace {
 
 constexpr uint64_t kMaxImageBytes = uint64_t(1) << 30;
 
-Wrap wrapMode(int mode) {
+Wrap wrapMode(const Document& document, int mode, const std::string& path) {
     switch (mode) {
+        case TINYGLTF_TEXTURE_WRAP_REPEAT: return Wrap::Repeat;
         case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE: return Wrap::ClampToEdge;
         case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT: return Wrap::MirroredRepeat;
-        default: return Wrap::Repeat;
+        default: document.fail(path, "no such wrap mode", "10497, 33071 or 33648", std::to_string(mode));
     }
+}
+
+/// -1: the file does not say.
+TextureFilter filterOf(const Document& document, int filter, const std::string& path) {
+    if (filter == TINYGLTF_TEXTURE_FILTER_NEAREST) return TextureFilter::Nearest;
+    if (filter != -1 && filter != TINYGLTF_TEXTURE_FILTER_LINEAR)
+        document.fail(path, "no such filter", "9728 or 9729", std::to_string(filter));
+    return TextureFilter::Linear;
 }
 
 /// What stands in for an image that cannot be read: a magenta and grey checker for colours, neutral values for data.
@@ -69,9 +78,10 @@ Texture TextureLibrary::texture(int index, int texCoord, const tinygltf::Extensi
     if (source.sampler >= 0) {
         document_.checkIndex(source.sampler, model.samplers.size(), texturePath + "/sampler", "samplers");
         const tinygltf::Sampler& sampler = model.samplers[static_cast<size_t>(source.sampler)];
-        texture.wrapU = wrapMode(sampler.wrapS);
-        texture.wrapV = wrapMode(sampler.wrapT);
-        if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) texture.filter = TextureFilter::Nearest;
+        const std::string path = "/samplers/" + std::to_string(source.sampler);
+        texture.wrapU = wrapMode(document_, sampler.wrapS, path + "/wrapS");
+        texture.wrapV = wrapMode(document_, sampler.wrapT, path + "/wrapT");
+        texture.filter = filterOf(document_, sampler.magFilter, path + "/magFilter");
     }
     texture.uvSet = texCoord;
     if (const auto found = extensions.find("KHR_texture_transform"); found != extensions.end()) {
@@ -146,7 +156,10 @@ void TextureLibrary::loadImage(int index, Entry& entry) const {
             file = readFile(source.file, kMaxImageBytes);
             bytes = file;
         }
-        if (bytes.empty()) throwBadInput({.what = "the image \"" + source.name.substr(0, 200) + "\" does not exist"});
+        if (bytes.empty())
+            throwBadInput({.what = source.name.starts_with("data:")
+                                       ? "an unsupported kind of data URI, \"" + source.name + '"'
+                                       : "the image \"" + source.name.substr(0, 200) + "\" does not exist"});
         entry.digest = digest64(bytes);
         if (const std::string format = formatOf(bytes); !format.empty()) {
             countUnsupported(format);

@@ -145,6 +145,90 @@ TEST(GltfRules, UnlitMaterialsHaveTheSidesOfTheFile) {
     }
 }
 
+/// A file with one triangle, textured through a sampler, that `breakIt` has spoilt is refused with these parts.
+void expectRefused(const std::function<void(nlohmann::json&)>& breakIt,
+                   const std::initializer_list<std::string>& parts) {
+    GltfBuilder file;
+    file.triangle().primitive()["material"] = 0;
+    file.json["images"] = {{{"uri", "data:image/png;base64,AAAA"}}};
+    file.json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9729}}};
+    file.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    file.json["materials"] = {
+        {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    file.load();
+    breakIt(file.json);
+    file.expectRefused(parts);
+}
+
+TEST(GltfRules, ModesThatAreNoneAreRefused) {
+    expectRefused([](auto& f) { f["materials"][0]["alphaMode"] = "FOO"; },
+                  {"/materials/0/alphaMode", "\"FOO\"", "MASK"});
+    expectRefused([](auto& f) { f["samplers"][0]["wrapS"] = 5; }, {"/samplers/0/wrapS", "10497", "found 5"});
+    expectRefused([](auto& f) { f["samplers"][0]["wrapT"] = 0; }, {"/samplers/0/wrapT", "found 0"});
+    expectRefused([](auto& f) { f["samplers"][0]["magFilter"] = 9984; }, {"/samplers/0/magFilter", "found 9984"});
+}
+
+TEST(GltfRules, CamerasOutOfRangeAreWarnedOf) {
+    GltfBuilder file;
+    file.triangle();
+    file.json["cameras"] = {
+        {{"type", "perspective"}, {"perspective", {{"yfov", -1}, {"znear", 0.1}}}},
+        {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 0}, {"znear", 0.1}, {"zfar", 10}}}},
+        {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+    file.json["nodes"] = {{{"mesh", 0}}, {{"camera", 0}}, {{"camera", 1}}, {{"camera", 2}}};
+    file.json["scenes"][0]["nodes"] = {0, 1, 2, 3};
+    MessageLog log;
+    const Scene scene = file.load(log);
+    EXPECT_FLOAT_EQ(scene.cameras.at(0).camera.fovYDeg, 1);
+    EXPECT_FLOAT_EQ(scene.cameras.at(2).camera.fovYDeg, degrees(0.5f));
+    ASSERT_EQ(log.warnings().size(), 2u);
+    EXPECT_EQ(log.warnings()[0], "test.glb: /cameras/0/perspective/yfov: -1 is out of range; 0.01745 is taken");
+    EXPECT_EQ(log.warnings()[1], "test.glb: /cameras/1/orthographic/ymag: 0 is out of range; 0.0001 is taken");
+}
+
+/// A .gltf of one triangle whose buffer is this data URI.
+std::string withBuffer(const std::string& uri) {
+    nlohmann::json file = {
+        {"asset", {{"version", "2.0"}}},
+        {"nodes", {{{"mesh", 0}}}},
+        {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 0}}}}}}}}},
+        {"accessors", {{{"bufferView", 0}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}}}},
+        {"bufferViews", {{{"buffer", 0}, {"byteLength", 36}}}},
+        {"buffers", {{{"byteLength", 36}, {"uri", uri}}}}};
+    return file.dump();
+}
+
+TEST(GltfRules, DataWithoutAKindAreBytes) {
+    const test::TemporaryFolder folder;
+    MessageLog log;
+    for (const char* kind : {"", "application/octet-stream", "model/gltf-buffer", "text/plain;charset=US-ASCII"}) {
+        writeFileAtomically(folder / "a.gltf",
+                            withBuffer("data:" + std::string(kind) + ";base64," + std::string(48, 'A')));
+        EXPECT_EQ(loadGltf(folder / "a.gltf", log).triangleCount(), 1) << kind;
+    }
+    writeFileAtomically(folder / "a.gltf", withBuffer("data:text/plain," + std::string(500, 'A')));
+    const std::string shown = "\"data:text/plain," + std::string(24, 'A') + "...\"";
+    test::expectError(ErrorKind::BadInput, [&] { loadGltf(folder / "a.gltf", log); },
+                      {"a.gltf", "a buffer has an unsupported kind of data URI, " + shown});
+
+    GltfBuilder file;
+    file.triangle().primitive()["material"] = 0;
+    file.json["images"] = {{{"uri", "data:text/plain," + std::string(500, 'A')}}};
+    file.json["textures"] = {{{"source", 0}}};
+    file.json["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+    file.load(log);
+    ASSERT_EQ(log.warnings().size(), 1u);
+    EXPECT_NE(log.warnings()[0].find("an unsupported kind of data URI, " + shown), std::string::npos);
+}
+
+TEST(GltfRules, BytesThatAreNoTextAreShownAsNumbers) {
+    const test::TemporaryFolder folder;
+    writeFileAtomically(folder / "a.gltf", std::string_view("{\"asset\": {\"generator\": \"B\xe4ume\"}}"));
+    MessageLog log;
+    test::expectError(ErrorKind::BadInput, [&] { loadGltf(folder / "a.gltf", log); },
+                      {"a.gltf:1:28", "ill-formed UTF-8", "\\xe4"});
+}
+
 /// Puts the memory limit back.
 struct MemoryLimit {
     explicit MemoryLimit(uint64_t bytes) { setMemoryLimit(bytes); }
