@@ -41,6 +41,24 @@ TEST(Memory, TheLimitRefusesByName) {
     setMemoryLimit(limit);
 }
 
+TEST(Memory, ManySmallRequestsPassTheLimitNeither) {
+    const uint64_t limit = memoryLimit();
+    constexpr uint64_t kRoom = uint64_t(48) << 20, kPiece = 40000;
+    setMemoryLimit(residentBytes() + kRoom);
+    std::vector<std::vector<char>> pieces;
+    uint64_t taken = 0;
+    const auto takeAll = [&] {
+        for (; taken < 2 * kRoom; taken += kPiece) {
+            checkMemory("a piece", kPiece);
+            pieces.emplace_back(kPiece, char(1));
+        }
+    };
+    expectError(ErrorKind::Resources, takeAll, {"a piece"});
+    EXPECT_GT(taken, kRoom / 2);
+    EXPECT_LT(taken, kRoom + kRoom / 8);
+    setMemoryLimit(limit);
+}
+
 TEST(Memory, ResidentBytesGrowWithUse) {
     const uint64_t before = residentBytes();
     std::vector<char> block(64 << 20, 1);
