@@ -130,9 +130,28 @@ float framingDistance(const Vec3& halfSize, const Mat3& axes, float halfAngle) {
 }
 
 /// Whether a material is there to light others. An emission texture without extra strength only paints glowing parts,
-/// as on models that expect to be lit from outside.
+/// as on models that expect to be lit from outside; unlit surfaces are pictures of light, not lamps.
 bool illuminates(const Material& material) {
-    return material.emits() && (!material.emissionTexture || maxComponent(material.emission) > 1);
+    return material.emits() && !material.unlit && (!material.emissionTexture || maxComponent(material.emission) > 1);
+}
+
+/// Whether something in the scene wears a material of that kind.
+bool someSurface(const Scene& scene, bool (*isOfKind)(const Material&)) {
+    std::unordered_set<const Mesh*> seen;
+    for (const Instance& instance : scene.instances) {
+        if (instance.material >= 0) {
+            if (isOfKind(scene.materials[static_cast<size_t>(instance.material)])) return true;
+            continue;
+        }
+        if (!seen.insert(instance.mesh.get()).second) continue;
+        if (instance.mesh->triangleMaterial.empty()) {
+            if (isOfKind(scene.materials[instance.mesh->material])) return true;
+            continue;
+        }
+        for (const uint32_t material : instance.mesh->triangleMaterial)
+            if (isOfKind(scene.materials[material])) return true;
+    }
+    return false;
 }
 
 FirstHits lookAround(const Scene& scene, const Vec3& origin, const std::stop_token& stop = {}) {
@@ -198,28 +217,15 @@ Camera defaultCamera(const Scene& scene, std::stop_token stop) {
 }
 
 bool hasLight(const Scene& scene) {
-    if (!scene.lights.empty() || scene.environment.visible()) return true;
-    std::unordered_set<const Mesh*> seen;
-    for (const Instance& instance : scene.instances) {
-        if (instance.material >= 0) {
-            if (illuminates(scene.materials[static_cast<size_t>(instance.material)])) return true;
-            continue;
-        }
-        if (!seen.insert(instance.mesh.get()).second) continue;
-        if (instance.mesh->triangleMaterial.empty()) {
-            if (illuminates(scene.materials[instance.mesh->material])) return true;
-            continue;
-        }
-        for (const uint32_t material : instance.mesh->triangleMaterial)
-            if (illuminates(scene.materials[material])) return true;
-    }
-    return false;
+    return !scene.lights.empty() || scene.environment.visible() || someSurface(scene, illuminates);
 }
 
 void addDefaults(Scene& scene, MessageLog& log, bool allowSky, std::stop_token stop) {
     if (scene.cameras.empty())
         scene.cameras.push_back({defaultCamera(scene, std::move(stop)), -1, {}, Interpolation::CatmullRom});
     if (!allowSky || hasLight(scene)) return;
+    const auto lit = [](const Material& material) { return !material.unlit; };
+    if (!scene.instances.empty() && !someSurface(scene, lit)) return;
     scene.environment.image = std::make_shared<const Image>(makeDefaultSky());
     log.warning(scene.path + ": no light and no emission; lit by the built-in sky");
 }

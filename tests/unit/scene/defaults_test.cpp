@@ -192,6 +192,16 @@ TEST(Defaults, DarkScenesGetTheSkyAndAWarning) {
     addDefaults(glowing, log, true);
     EXPECT_FALSE(glowing.environment.visible());
 
+    // An unlit card lights nothing beside it; alone it needs no light.
+    Scene card = sceneOf(boxMesh(Vec3(1)));
+    card.materials[0].emission = Vec3(1), card.materials[0].unlit = true;
+    addDefaults(card, log, true);
+    EXPECT_FALSE(card.environment.visible());
+    card.materials.emplace_back();
+    card.instances.push_back({"wall", std::make_shared<const Mesh>(boxMesh(Vec3(2))), -1, -1, 1, -1});
+    addDefaults(card, log, true);
+    EXPECT_TRUE(card.environment.visible());
+
     // Emission that nothing wears does not count; our own files are dark when they say so.
     Scene unused = sceneOf(boxMesh(Vec3(1)));
     unused.materials.emplace_back();
