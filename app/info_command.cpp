@@ -173,10 +173,12 @@ void printInfo(const json& info, const Scene& scene, const SceneMemory& memory) 
              fmt::format("{:.3g} x {:.3g} x {:.3g} m, from ({:.3g}, {:.3g}, {:.3g}) to ({:.3g}, {:.3g}, {:.3g})",
                          bounds.size().x, bounds.size().y, bounds.size().z, bounds.lower.x, bounds.lower.y,
                          bounds.lower.z, bounds.upper.x, bounds.upper.y, bounds.upper.z));
-    line("memory",
-         fmt::format("{}: geometry {}, textures {}, acceleration structure and lights {}; peak {}, {:.2f} of it",
-                     formatBytes(memory.sum()), formatBytes(memory.geometry), formatBytes(memory.textures),
-                     formatBytes(memory.acceleration), formatBytes(memory.peak), memory.peakToSum()));
+    // Beside a small scene the peak is the program's own.
+    constexpr uint64_t kSmall = uint64_t(64) << 20;
+    line("memory", fmt::format("{}: geometry {}, textures {}, acceleration structure and lights {}; peak {}{}",
+                               formatBytes(memory.sum()), formatBytes(memory.geometry), formatBytes(memory.textures),
+                               formatBytes(memory.acceleration), formatBytes(memory.peak),
+                               memory.sum() < kSmall ? "" : fmt::format(", {:.2f} of it", memory.peakToSum())));
     line("warnings", info["warnings"].empty() ? "none" : std::to_string(info["warnings"].size()));
     for (const json& warning : info["warnings"]) std::puts(("  " + warning.get<std::string>()).c_str());
 }

@@ -35,12 +35,12 @@ Camera orbited(Camera camera, float degrees) {
     return camera;
 }
 
-FrameCheck checkFrame(Tracer& tracer, const FrameSampling& sampling, std::stop_token stop) {
+FrameCheck checkFrame(Tracer& tracer, const Tracer& before, const FrameSampling& sampling, std::stop_token stop) {
     Signals signals;
     if (!tracer.sample(sampling, signals, stop)) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
     FrameCheck check;
     check.frame = static_cast<int>(sampling.frame);
-    check.findings = checkSignals(signals, sampling, tracer);
+    check.findings = checkSignals(signals, sampling, tracer, before);
     return check;
 }
 
@@ -55,7 +55,7 @@ std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop
                                     std::stop_token sceneStop) {
     const Extent2 extent = smallExtent(document.render());
     const std::string size = fmt::format("{}x{}, {} samples a pixel", extent.width, extent.height, kSamples);
-    const float before = document.time();
+    const float start = document.time();
     FrameSampling sampling;
     sampling.extent = extent;
     sampling.camera = sampling.previousCamera = poseCamera(document.camera(), extent);
@@ -69,21 +69,24 @@ std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop
     const float open = document.camera().shutter / document.render().fps;
     sampling.shutterOpen = open > 0;
 
-    const auto first = poseScene(document.scene(), {before, before + open, before}, nullptr, sceneStop);
-    tracer.bind(first, sceneStop);
-    std::vector<FrameCheck> checks{checkFrame(tracer, sampling, stop)};
+    const auto first = poseScene(document.scene(), {start, start + open, start}, nullptr, sceneStop);
+    // What moves is looked up in a scene of its own, not in what the signals were made of.
+    const bool animated = document.scene()->isAnimated();
+    Tracer other;
+    Tracer& before = animated ? other : tracer;
+    before.bind(first, sceneStop);
+    std::vector<FrameCheck> checks{checkFrame(before, before, sampling, stop)};
     checks.back().what = size + ", jitter per pixel";
 
-    const bool animated = document.scene()->isAnimated();
-    if (animated) document.setTime(before + 1 / document.render().fps);
+    if (animated) document.setTime(start + 1 / document.render().fps);
     sampling.frame = 1;
     sampling.firstSample = kSamples;
     sampling.previousCamera = sampling.camera;
     sampling.camera = poseCamera(orbited(document.camera(), kOrbitDeg), extent);
     sampling.jitter = Jitter::PerFrame;
-    tracer.bind(poseScene(document.scene(), {document.time(), document.time() + open, before}, first.get(), sceneStop),
+    tracer.bind(poseScene(document.scene(), {document.time(), document.time() + open, start}, first.get(), sceneStop),
                 sceneStop);
-    checks.push_back(checkFrame(tracer, sampling, stop));
+    checks.push_back(checkFrame(tracer, before, sampling, stop));
     checks.back().what = size + ", jitter per frame, camera moved" + (animated ? ", one frame later" : "");
     return checks;
 }

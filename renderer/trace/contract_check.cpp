@@ -55,6 +55,7 @@ struct CheckedFrame {
     const Signals& signals;
     const FrameSampling& sampling;
     const Tracer& tracer;
+    const Tracer& before;  ///< bound to the previous frame's pose
 
     bool sky(Pixel p) const { return signals.ids(Signal::ObjectId).at(0, p.x, p.y) == 0; }
     SurfacePoint point(Pixel p) const {
@@ -157,7 +158,7 @@ ContractFinding motionVectors(const CheckedFrame& frame) {
     frame.eachSurface([&](Pixel p) {
         const SurfacePoint point = frame.point(p);
         const Vec3 now = frame.camera(p).project(frame.tracer.position(point));
-        const Vec3 before = s.previousCameraAt(point.time).project(frame.tracer.previousPosition(point));
+        const Vec3 before = s.previousCameraAt(point.time).project(frame.before.position(point));
         if (!(before.z > 0) && s.previousCamera.projection == Projection::Perspective) return;
         const Vec3 motion = colourAt(frame.signals[Signal::Motion], p);
         const double error = std::hypot(before.x - now.x - motion.x, before.y - now.y - motion.y);
@@ -173,6 +174,19 @@ Vec2 offsetAt(const CheckedFrame& frame, Pixel p) {
     return {at.x - static_cast<float>(p.x), at.y - static_cast<float>(p.y)};
 }
 
+/// Whether a float holds places on the surface to a few hundredths of a pixel: it is neither too far away for that nor
+/// seen edge-on, where the barycentrics of a sliver do not.
+bool holdsOffsets(const CheckedFrame& frame, Pixel p) {
+    const Vec3 place = colourAt(frame.signals[Signal::Position], p);
+    const CameraPose camera = frame.camera(p);
+    const Vec3 away =
+        camera.projection == Projection::Perspective ? glm::normalize(place - camera.position()) : camera.forward();
+    if (std::abs(glm::dot(away, colourAt(frame.signals[Signal::GeometricNormal], p))) < 0.05f) return false;
+    const float scale = std::max(maxComponent(glm::abs(place)), frame.signals[Signal::Depth].at(0, p.x, p.y));
+    const Vec3 aside = place + Vec3(camera.worldFromCamera[0]) * (scale * 0x1p-22f);
+    return glm::distance(Vec2(camera.project(aside)), Vec2(camera.project(place))) < 0.05f;
+}
+
 /// Needs a pinhole and enough surface; else there is nothing to check.
 ContractFinding uniformOffsets(const CheckedFrame& frame) {
     constexpr int kCells = 8, kEnough = 5 * kCells * kCells, kSide = BlueNoiseTile::kSide;
@@ -184,7 +198,7 @@ ContractFinding uniformOffsets(const CheckedFrame& frame) {
     frame.eachSurface([&](Pixel p) {
         // Blue noise repeats from tile to tile: the same offsets again would make a small deviation a sure one.
         const size_t place = static_cast<size_t>(p.y % kSide * kSide + p.x % kSide);
-        if (repeats && seen[place]) return;
+        if ((repeats && seen[place]) || !holdsOffsets(frame, p)) return;
         seen[place] = true;
         const Vec2 offset = offsetAt(frame, p);
         const auto cell = [&](float o) { return std::clamp(static_cast<int>(o * kCells), 0, kCells - 1); };
@@ -199,11 +213,11 @@ ContractFinding uniformOffsets(const CheckedFrame& frame) {
 }
 
 ContractFinding oneOffset(const CheckedFrame& frame) {
-    // Barycentrics of a sliver seen edge-on hold a place on it to a few hundredths of a pixel.
     Rule rule("all pixels have the frame's one sub-pixel offset", 0.1, "px");
     if (frame.sampling.camera.aperture > 0) return rule.take();
     std::optional<Vec2> first;
     frame.eachSurface([&](Pixel p) {
+        if (!holdsOffsets(frame, p)) return;
         if (!first) first = offsetAt(frame, p);
         rule.check(p, glm::distance(offsetAt(frame, p), *first));
     });
@@ -249,8 +263,9 @@ std::string ContractFinding::text() const {
 
 SignalSet contractSignals() { return SignalSet::all(); }
 
-std::vector<ContractFinding> checkSignals(const Signals& signals, const FrameSampling& sampling, const Tracer& tracer) {
-    const CheckedFrame frame{signals, sampling, tracer};
+std::vector<ContractFinding> checkSignals(const Signals& signals, const FrameSampling& sampling, const Tracer& tracer,
+                                          const Tracer& before) {
+    const CheckedFrame frame{signals, sampling, tracer, before};
     return {finiteValues(frame),
             unitNormals(frame),
             range01(frame, Signal::Albedo),

@@ -25,9 +25,11 @@ struct ContractFinding {
 SignalSet contractSignals();
 
 /// Verifies what every filter assumes of its input: finite values, unit normals, albedo in [0,1], the lighting
-/// identity, depth and position that agree with the camera, motion vectors that lead to where the tracer says the
-/// surface was, a jitter distributed as `sampling.jitter` says (through a pinhole: a lens leaves nothing to check), ids
-/// that exist, an empty sky. `signals` was made by tracer.sample(sampling); the tracer is still bound to the same pose.
-std::vector<ContractFinding> checkSignals(const Signals& signals, const FrameSampling& sampling, const Tracer& tracer);
+/// identity, depth and position that agree with the camera, motion vectors that lead to where the surface was, a jitter
+/// distributed as `sampling.jitter` says (through a pinhole: a lens leaves nothing to check), ids that exist, an empty
+/// sky. `signals` was made by tracer.sample(sampling); the tracer is still bound to the same pose, and `before` to the
+/// previous frame's, posed by itself: where it has a surface, the surface was. Where nothing moves it may be `tracer`.
+std::vector<ContractFinding> checkSignals(const Signals& signals, const FrameSampling& sampling, const Tracer& tracer,
+                                          const Tracer& before);
 
 }  // namespace lumi
