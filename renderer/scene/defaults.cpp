@@ -86,7 +86,7 @@ bool mayMeet(const Bounds3& box, const Vec3& origin, const std::array<Vec3, kRay
 }
 
 /// Adds what the rays from `origin` meet of the instance at time 0.
-void traceInstance(const Scene& scene, const NodePose& pose, const Instance& instance, const Vec3& origin,
+void traceInstance(const NodePose& pose, PosedSkins& skins, const Instance& instance, const Vec3& origin,
                    const std::array<Vec3, kRays>& directions, MeshBounds& meshBounds, FirstHits& hits) {
     const Mesh& mesh = *instance.mesh;
     const bool skinned = instance.skin >= 0 && !mesh.skin.empty();
@@ -96,8 +96,7 @@ void traceInstance(const Scene& scene, const NodePose& pose, const Instance& ins
     const auto placed = [&] { return transformedBounds(meshBounds.of(mesh), worldFromObject); };
     if (!mesh.deforms() && !mayMeet(placed(), origin, directions, hits)) return;
     if (mesh.deforms()) {
-        std::vector<Mat4> joints;
-        if (skinned) joints = jointMatrices(scene.skins[static_cast<size_t>(instance.skin)], pose);
+        const std::vector<Mat4>& joints = skins.of(skinned ? instance.skin : -1);
         deformed = deform(
             mesh, instance.node >= 0 ? pose.morphWeights[static_cast<size_t>(instance.node)] : std::vector<float>(),
             joints);
@@ -157,12 +156,13 @@ bool someSurface(const Scene& scene, bool (*isOfKind)(const Material&)) {
 FirstHits lookAround(const Scene& scene, const Vec3& origin, const std::stop_token& stop = {}) {
     const std::array<Vec3, kRays> directions = spreadDirections();
     const NodePose pose = poseNodes(scene, 0.0f);
+    PosedSkins skins(scene, pose);
     FirstHits hits;
     MeshBounds meshBounds;
     constexpr size_t kPollStride = 1024;
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         if (i % kPollStride == 0) checkLoadStop(scene, stop);
-        traceInstance(scene, pose, scene.instances[i], origin, directions, meshBounds, hits);
+        traceInstance(pose, skins, scene.instances[i], origin, directions, meshBounds, hits);
     }
     return hits;
 }

@@ -103,4 +103,12 @@ std::vector<Mat4> jointMatrices(const Skin& skin, const NodePose& pose) {
     return matrices;
 }
 
+const std::vector<Mat4>& PosedSkins::of(int skin) {
+    static const std::vector<Mat4> kNone;
+    if (skin < 0) return kNone;
+    std::vector<Mat4>& joints = joints_[static_cast<size_t>(skin)];
+    if (joints.empty()) joints = jointMatrices(scene_.skins[static_cast<size_t>(skin)], pose_);
+    return joints;
+}
+
 }  // namespace lumi

@@ -29,4 +29,17 @@ float localTime(const Animation& animation, float time);
 /// World-space joint matrices of a skin: worldFromJoint * inverseBind.
 std::vector<Mat4> jointMatrices(const Skin& skin, const NodePose& pose);
 
+/// The same of a scene's skins, each worked out once however many instances share it. Not for several threads.
+class PosedSkins {
+public:
+    PosedSkins(const Scene& scene, const NodePose& pose) : scene_(scene), pose_(pose), joints_(scene.skins.size()) {}
+    /// Empty for -1, which is no skin.
+    const std::vector<Mat4>& of(int skin);
+
+private:
+    const Scene& scene_;
+    const NodePose& pose_;
+    std::vector<std::vector<Mat4>> joints_;
+};
+
 }  // namespace lumi

@@ -48,6 +48,7 @@ std::set<float> momentsOf(const Scene& scene) {
 
 void eachBounds(const Scene& scene, const NodePose& pose, MeshBounds& meshBounds,
                 const std::function<void(const Bounds3&)>& visit) {
+    PosedSkins skins(scene, pose);
     for (const Instance& instance : scene.instances) {
         const Mesh& mesh = *instance.mesh;
         const bool skinned = isSkinned(instance);
@@ -59,8 +60,7 @@ void eachBounds(const Scene& scene, const NodePose& pose, MeshBounds& meshBounds
         }
         std::vector<float> weights;
         if (instance.node >= 0) weights = pose.morphWeights[static_cast<size_t>(instance.node)];
-        std::vector<Mat4> joints;
-        if (skinned) joints = jointMatrices(scene.skins[static_cast<size_t>(instance.skin)], pose);
+        const std::vector<Mat4>& joints = skins.of(skinned ? instance.skin : -1);
         visit(transformedBounds(boundsOf(deform(mesh, weights, joints).positions), worldFromObject));
     }
 }

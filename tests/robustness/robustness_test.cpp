@@ -197,6 +197,23 @@ TEST_F(Robustness, VeryManyThingsOfAKind) {
     tryScene("primitives.gltf", test::asText(primitives), 0);
     EXPECT_EQ(accepted_, 2);
 }
+/// Opening them alone: a frame looks at every joint of every instance.
+TEST_F(Robustness, VeryManyInstancesOfOneSkin) {
+    test::GltfBuilder file;
+    test::addAllThatIsShaded(file);
+    constexpr int kEach = 12000;
+    for (int i = 0; i < 2 * kEach; ++i) {
+        const auto node = static_cast<int>(file.json["nodes"].size());
+        file.json["nodes"].push_back(i < kEach ? nlohmann::json::object() : nlohmann::json{{"mesh", 0}, {"skin", 0}});
+        if (i < kEach) file.json["skins"][0]["joints"].push_back(node);
+        file.json["scenes"][0]["nodes"].push_back(node);
+    }
+    write("skinned.gltf", test::asText(file));
+    const std::clock_t start = std::clock();
+    MessageLog log;
+    EXPECT_GT(loadScene(folder_ / "skinned.gltf", log)->instances.size(), size_t(kEach));
+    EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 10);
+}
 /// Each file in turn is taken away, or becomes a folder, when loading tells of its first step, its second and so on.
 TEST_F(Robustness, FilesThatVanishWhileLoading) {
     test::GltfBuilder rich;
