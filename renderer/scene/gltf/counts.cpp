@@ -22,6 +22,7 @@ public:
         vertices_.limit = (uint64_t(1) << 16) + bytes;
         elements_.limit = (uint64_t(1) << 20) + 16 * bytes;
         instances_.limit = (uint64_t(1) << 16) + 4 * bytes;
+        triangles_.limit = (uint64_t(1) << 22) + 8 * bytes;
     }
 
     void check() {
@@ -30,7 +31,7 @@ public:
             for (size_t p = 0; tree_.usedMeshes()[m] && p < model.meshes[m].primitives.size(); ++p)
                 addPrimitive(model.meshes[m].primitives[p],
                              "/meshes/" + std::to_string(m) + "/primitives/" + std::to_string(p));
-        checkMemory("the geometry of " + document_.path().filename().string(), triangles_ * kTriangleBytes);
+        checkMemory("the geometry of " + document_.path().filename().string(), triangles_.asked * kTriangleBytes);
         for (size_t n = 0; n < model.nodes.size(); ++n)
             if (tree_.nodeOf(n) >= 0) addNode(model.nodes[n], "/nodes/" + std::to_string(n));
         for (size_t a = 0; a < model.animations.size(); ++a)
@@ -63,7 +64,7 @@ private:
     void addPrimitive(const tinygltf::Primitive& primitive, const std::string& path) {
         // Draco's data stand in for all of the accessors' own; their counts are checked with them.
         if (!extensionOf(primitive.extensions, "KHR_draco_mesh_compression")) {
-            addTriangles(primitive);
+            addTriangles(primitive, path);
             for (const auto& [name, index] : primitive.attributes)
                 addWithoutData(name == "POSITION" ? vertices_ : elements_, index, path + "/attributes/" + name);
         }
@@ -73,12 +74,12 @@ private:
     }
 
     /// Of what is no Draco mesh, whose counts are those that it decodes to.
-    void addTriangles(const tinygltf::Primitive& primitive) {
+    void addTriangles(const tinygltf::Primitive& primitive, const std::string& path) {
         const auto position = primitive.attributes.find("POSITION");
         if (position == primitive.attributes.end()) return;
         const tinygltf::Accessor* corners = accessor(primitive.indices >= 0 ? primitive.indices : position->second);
         if (!corners || primitive.mode < TINYGLTF_MODE_TRIANGLES) return;
-        triangles_ += primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners->count / 3 : corners->count;
+        spend(triangles_, primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners->count / 3 : corners->count, path);
     }
 
     void addNode(const tinygltf::Node& node, const std::string& path) {
@@ -107,8 +108,8 @@ private:
 
     const Document& document_;
     const NodeTree& tree_;
-    uint64_t triangles_ = 0;
-    Budget vertices_{"vertices without data", 0}, elements_{"elements without data", 0}, instances_{"instances", 0};
+    Budget vertices_{"vertices without data", 0}, elements_{"elements without data", 0}, instances_{"instances", 0},
+        triangles_{"triangles", 0};
 };
 
 }  // namespace
