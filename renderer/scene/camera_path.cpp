@@ -202,7 +202,12 @@ CameraPath cameraPathOf(const Scene& scene, int camera, float fps) {
             source.interpolation == Interpolation::Linear ? Interpolation::Linear : Interpolation::CatmullRom;
         return path;
     }
-    const int frames = source.node >= 0 ? static_cast<int>(scene.duration() * fps) : 0;
+    const double length = source.node >= 0 ? std::floor(static_cast<double>(scene.duration()) * fps) : 0;
+    if (!(length < static_cast<double>(kMostKeys)))
+        throw Error(ErrorKind::BadInput, {"the animation is too long to be written as a camera path", scene.path,
+                                          fmt::format("fewer than {} frames (render.fps may be lower)", kMostKeys),
+                                          fmt::format("{:.0f}", length)});
+    const auto frames = static_cast<int>(length);
     path.interpolation = Interpolation::Linear;
     for (int frame = 0; frame <= frames; ++frame) {
         const float time = static_cast<float>(frame) / fps;

@@ -78,6 +78,14 @@ TEST(CameraPath, OfACameraThatStandsOrMoves) {
     expectNear(cameraPathOf(scene, 0, 30).at(3).eye, {0, 1, 7});
     scene.cameras[0].keys = somePath().keys;
     EXPECT_EQ(cameraPathOf(scene, 0, 30).keys.size(), 3u);
+    // Of a camera at a node that is animated: every frame of it, if there are not absurdly many.
+    scene.nodes.emplace_back();
+    scene.cameras[0].node = 0;
+    scene.animations.emplace_back();
+    scene.animations[0].duration = 2;
+    EXPECT_EQ(cameraPathOf(scene, 0, 30).keys.size(), 61u);
+    scene.animations[0].duration = 1e30f;
+    test::expectError(ErrorKind::BadInput, [&] { cameraPathOf(scene, 0, 30); }, {"too long", "fewer than 1000000"});
 }
 
 TEST(CameraPath, BrokenFilesAreNamedWithTheirKey) {
