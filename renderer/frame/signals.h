@@ -44,7 +44,8 @@ enum class Signal : uint8_t {
     InverseDepth,      ///< Z, 1/depth; 0 on the sky
     DepthGradient,     ///< XY, screen derivatives per pixel of 1/depth on the surface's tangent plane; 0 on the sky
     Position,          ///< XYZ world; 0 on the sky
-    Motion,  ///< XYZ: previous pixel minus current pixel (X, Y), view depth (Z); far off the image where the point was behind
+    /// XYZ: previous pixel minus current pixel (X, Y), view depth (Z); far off the image where the point was behind
+    Motion,
     Roughness,   ///< Y in [0,1], the user's roughness; 1 on the sky
     ObjectId,    ///< UINT: 1 + instance index; 0 on the sky
     MaterialId,  ///< UINT: 1 + material index; 0 on the sky

@@ -33,8 +33,7 @@ std::string formatCameraPath(const CameraPath& path, CameraPathFormat format);
 CameraPathFormat cameraPathFormatOf(const std::filesystem::path& file);
 
 /// The movement of a scene's camera: its own keys, or one at each of `fps` frames a second where nodes move it; one key
-/// for a camera that stands still.
-/// Throws Error(BadInput) for an animation of a million frames and more.
+/// for a camera that stands still. Throws Error(BadInput) for an animation of a million frames and more.
 CameraPath cameraPathOf(const Scene& scene, int camera, float fps);
 
 }  // namespace lumi

@@ -27,8 +27,9 @@ struct StudyRanking {
     struct Place {
         size_t method = 0;
         Rank rank;
-        Interval
-            toBest;  ///< paired difference to the method with the best mean, over the units where both have a value; not known for that one itself
+        /// Paired difference to the method with the best mean, over the units where both have a value; not known for
+        /// that one itself.
+        Interval toBest;
     };
     std::vector<Place> places;  ///< best mean first
 };

@@ -21,7 +21,8 @@ public:
     float albedo() const { return albedo_; }
     /// `wi` in the surface's local frame. 0 if a delta.
     LobeValue evaluate(const Vec3& wi) const;
-    /// A direction by the facets that wo sees, or the mirrored one; it may lie under the surface below, or under the varnish.
+    /// A direction by the facets that wo sees, or the mirrored one; it may lie under the surface below, or under the
+    /// varnish.
     Vec3 sample(Vec2 u) const;
 
 private:

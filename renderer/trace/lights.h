@@ -109,12 +109,8 @@ private:
     };
     /// All that a sample of it reads, in one line of the cache.
     struct alignas(64) Triangle {
-        enum : uint32_t {
-            kDoubleSided = 1,
-            kMirrored = 2,
-            kMoves = 4,
-            kTextured = 8
-        };  ///< textured: emission or alpha, or the radiance depends on the direction
+        /// Textured: emission or alpha, or the radiance depends on the direction.
+        enum : uint32_t { kDoubleSided = 1, kMirrored = 2, kMoves = 4, kTextured = 8 };
         Vec3 corner, edge1, edge2;
         Vec3 radiance{0};  ///< unless textured
         uint32_t instance = 0, primitive = 0;

@@ -72,6 +72,14 @@ class Layout(unittest.TestCase):
         wrong = sorted({line.split(":")[0] for line in check.stderr.splitlines() if "clang-format-violations" in line})
         self.assertEqual([str(pathlib.Path(p).relative_to(ROOT)) for p in wrong], [], "clang-format -i mends them")
 
+    def test_comments_keep_to_the_columns(self):
+        """clang-format leaves comments as they are; strings may be as long as they must."""
+        wide = [f"{path.relative_to(ROOT)}:{number}"
+                for path in code_files("renderer", "ui", "app", "tests")
+                for number, line in enumerate(path.read_text().splitlines(), 1)
+                if len(line) > 120 and re.search(r"(^|\s)///?<? ", line)]
+        self.assertEqual(wide, [])
+
     def test_sources_are_listed_in_a_build_file(self):
         """A source that no CMakeLists.txt names is never compiled, and its tests never run."""
         listed = "\n".join(p.read_text() for p in ROOT.rglob("CMakeLists.txt") if "build" not in p.parts)

@@ -59,13 +59,13 @@ struct SampleSet {
     std::vector<uint32_t> words;  ///< a pixel
     std::vector<uint32_t> first;  ///< index of each pixel's first sample, and one more: the number of samples
     std::vector<SampleLocation> locations;
-    std::vector<Vec3>
-        inWorld;  ///< position, metres, or unit direction into the sky; not a number for samples that are evicted
+    /// Position, metres, or unit direction into the sky; not a number for samples that are evicted.
+    std::vector<Vec3> inWorld;
     std::vector<Vec2> places;  ///< on the screen, continuous pixels
     std::vector<uint8_t> flags;
     std::vector<SampleNote> notes;
-    std::vector<Vec3>
-        direct;  ///< scene-linear: emission and light that met one surface, this frame's or its mean since nothing moves
+    /// Scene-linear: emission and light that met one surface, this frame's or its mean since nothing moves.
+    std::vector<Vec3> direct;
     std::vector<Vec3> indirect;        ///< running average; empty: paths ended at the first surface
     std::weak_ptr<const Scene> scene;  ///< that positions are of
 

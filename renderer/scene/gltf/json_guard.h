@@ -24,8 +24,8 @@ struct JsonSummary {
 inline constexpr int kMaxJsonDepth = 128;
 
 /// The JSON in a form that tinygltf accepts: every fallback buffer is one byte long and embedded, so that nothing is
-/// read for it; data URIs in base64 of other kinds than tinygltf knows, or of none [RFC 2397], are bytes; the indices of
-/// Draco primitives, which tinygltf wants bytes for, stand in their extension.
+/// read for it; data URIs in base64 of other kinds than tinygltf knows, or of none [RFC 2397], are bytes; the indices
+/// of Draco primitives, which tinygltf wants bytes for, stand in their extension.
 std::string readableByTinygltf(std::string_view json);
 
 /// Reads through the JSON without building a tree and without recursion. Throws Error(BadInput): a syntax error (with

@@ -71,8 +71,9 @@ double deltaShare(const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo) {
     return onTop + bsdf.probability(Lobe::SpecularReflection) + bsdf.probability(Lobe::SpecularTransmission);
 }
 
-/// Mirrors lose no sample; a coat that leans may lose all. Facets of a coat lose those that reflect downwards, and those weigh nothing in its albedo
-/// while the others weigh 1 at most: what facets that reflect everything lack bounds them.
+/// Mirrors lose no sample; a coat that leans may lose all. Facets of a coat lose those that reflect downwards, and
+/// those weigh nothing in its albedo while the others weigh 1 at most: what facets that reflect everything lack bounds
+/// them.
 double mostLostByCoat(const Bsdf& bsdf, const BsdfInputs& inputs, const Vec3& wo) {
     const float roughness = inputs.layers.clearcoatRoughness;
     if (coatNormal(inputs, wo).z < 1) return bsdf.probability(Lobe::Clearcoat);

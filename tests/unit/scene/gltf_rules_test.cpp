@@ -86,7 +86,7 @@ TEST(GltfRules, FacesWithoutNormalsStayFlatWhenTheyMorph) {
     for (const float weight : {0.0f, 0.5f, 1.0f}) {
         const std::vector<float> weights{weight};
         const DeformedVertices bent = deform(mesh, weights, {});
-        // The corner (1, -1) rises by h = 4 weight: the first triangle's plane is z = h (x - y) / 2, the second's z = 0.
+        // The corner (1, -1) rises by h = 4 weight: the first triangle's plane is z = h (x - y) / 2, the second's 0.
         const float slope = 2 * weight;
         for (int c = 0; c < 3; ++c) {
             expectNear(bent.normals[mesh.triangles[0][c]], glm::normalize(Vec3(-slope, slope, 1)));
