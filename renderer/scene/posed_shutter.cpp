@@ -16,8 +16,16 @@ constexpr float kMostStray = 1e-3f;
 bool equalSpans(std::span<const float> a, std::span<const float> b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end());
 }
-bool equalSpans(std::span<const Mat4> a, std::span<const Mat4> b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end());
+
+/// Does `holds(joint)` for one of the joints that bend the instance? Asks for those that its mesh names where these are
+/// fewer than the skin's, so that many small parts of a large skeleton cost no more than their vertices do.
+template <typename Holds>
+bool anyJoint(const Instance& instance, size_t skinJoints, const Holds& holds) {
+    const std::vector<uint32_t>& named = instance.mesh->skin.joint;
+    if (named.size() < skinJoints) return std::any_of(named.begin(), named.end(), holds);
+    for (size_t j = 0; j < skinJoints; ++j)
+        if (holds(j)) return true;
+    return false;
 }
 
 Mat4 between(const Mat4& a, const Mat4& b, float t) { return t > 0 ? a * (1 - t) + b * t : a; }
@@ -47,9 +55,8 @@ bool strays(const Instance& instance, const PosedMoment& a, const PosedMoment& t
     for (size_t i = 0; i < weights.size() && i < weightsA.size() && i < weightsB.size(); ++i)
         if (std::abs(glm::mix(weightsA[i], weightsB[i], part) - weights[i]) > kMostStray) return true;
     const auto jointsA = jointsOf(instance, a), joints = jointsOf(instance, truth), jointsB = jointsOf(instance, b);
-    for (size_t j = 0; j < joints.size(); ++j)
-        if (strays(jointsA[j], joints[j], jointsB[j], part, meshBounds)) return true;
-    return false;
+    return anyJoint(instance, joints.size(),
+                    [&](size_t j) { return strays(jointsA[j], joints[j], jointsB[j], part, meshBounds); });
 }
 
 bool standsStill(const Instance& instance, std::span<const PosedMoment> moments) {
@@ -99,8 +106,10 @@ std::span<const Mat4> jointsOf(const Instance& instance, const PosedMoment& mome
 }
 
 bool deformsAlike(const Instance& instance, const PosedMoment& a, const PosedMoment& b) {
-    return &a == &b || (equalSpans(morphWeightsOf(instance, a), morphWeightsOf(instance, b)) &&
-                        equalSpans(jointsOf(instance, a), jointsOf(instance, b)));
+    if (&a == &b) return true;
+    if (!equalSpans(morphWeightsOf(instance, a), morphWeightsOf(instance, b))) return false;
+    const auto jointsA = jointsOf(instance, a), jointsB = jointsOf(instance, b);
+    return !anyJoint(instance, jointsA.size(), [&](size_t j) { return jointsA[j] != jointsB[j]; });
 }
 
 std::shared_ptr<const DeformedVertices> deformAt(const Instance& instance, const PosedMoment& moment) {

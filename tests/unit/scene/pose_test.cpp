@@ -157,6 +157,29 @@ TEST(Pose, SkinningFollowsTheJointsAndIgnoresTheNode) {
     expectNear(posed->bounds.upper, {1, 1, 0});
 }
 
+/// A part of a large skeleton: the mesh names one joint of five, of which the second and the fourth turn.
+TEST(Pose, APartOfASkeletonBendsWithTheJointsThatItNames) {
+    const auto partNaming = [](uint32_t joint) {
+        const auto scene = bendingScene();
+        auto mesh = std::make_shared<Mesh>(*scene->instances[0].mesh);
+        mesh->skin = {{0, 1, 2, 3}, {joint, joint, joint}, {1, 1, 1}};
+        scene->instances[0].mesh = mesh;
+        scene->nodes.push_back(node(0, {0, 1, 0}));
+        scene->skins = {{{0, 1, 0, 1, 3}, std::vector<Mat4>(5, Mat4(1))}};
+        return poseScene(scene, {.open = 0.5f, .close = 1, .previousOpen = 0.25f});
+    };
+    for (const uint32_t joint : {0u, 1u, 3u, 4u}) {
+        const auto posed = partNaming(joint);
+        const PosedInstance& part = posed->instances[0];
+        const bool turns = joint == 1 || joint == 3;
+        EXPECT_EQ(part.deformed != part.deformedClose(), turns) << joint;
+        EXPECT_EQ(part.deformed != part.deformedPrevious(), turns) << joint;
+        EXPECT_EQ(part.track() != nullptr, turns) << joint;
+        EXPECT_EQ(posed->anythingMoves, turns) << joint;
+        EXPECT_EQ(part.track() && part.track()->deformed.size() > 2, turns) << "a turn is no straight way";
+    }
+}
+
 TEST(Pose, DeformedVerticesAreSharedFromFrameToFrame) {
     const auto scene = bendingScene();
     const auto first = poseScene(scene, {.open = 0, .close = 0, .previousOpen = 0});
