@@ -218,6 +218,21 @@ StudyPictures readPictures(const JsonTree& tree, const JsonValue* section) {
     return pictures;
 }
 
+namespace {
+
+/// An entry's parameters have no module before their dot: with one, they would be those of another that does not run.
+void refuseOtherModule(const std::string& module, const StudyValue& value, size_t dot) {
+    const std::string before = value.id.substr(0, dot);
+    const std::span<const ModuleEntry> catalog = moduleCatalog();
+    if (std::none_of(catalog.begin(), catalog.end(), [&](const ModuleEntry& known) { return known.id == before; }))
+        return;
+    throwBadInput(
+        {fmt::format("\"{}\" has no effect on an entry of module \"{}\"", value.id, module), value.where,
+         before == module ? '"' + value.id.substr(dot + 1) + '"' : "a parameter of that module, or of the scene", ""});
+}
+
+}  // namespace
+
 void checkModuleValue(const std::string& module, const StudyValue& value) {
     const std::unique_ptr<Module> instance = findModule(module).make();
     const Describe describe = [&](ParameterVisitor& v) { instance->describe(v); };
@@ -230,7 +245,10 @@ void checkModuleValue(const std::string& module, const StudyValue& value) {
         }
         return;
     }
-    if (value.id.find('.') != std::string::npos) return;
+    if (const size_t dot = value.id.find('.'); dot != std::string::npos) {
+        refuseOtherModule(module, value, dot);
+        return;
+    }
     std::vector<std::string> ids;
     for (const ParameterInfo& info : declared) ids.push_back(info.id);
     const std::string near = nearestName(value.id, ids);

@@ -128,6 +128,10 @@ TEST(StudyFile, ModuleParametersAreCheckedAgainstTheCatalogue) {
     refused(entry(R"({"module": "acumulate"})"), {"unknown module \"acumulate\"", "\"accumulate\"", ":2:25"});
     refused(entry(R"({"module": "accumulate", "set": {"limitt": true}})"),
             {"module \"accumulate\" has no parameter \"limitt\"", "\"limit\"", ":2:"});
+    refused(entry(R"({"module": "accumulate", "set": {"temporal.taa-alpha": 0.5}})"),
+            {"\"temporal.taa-alpha\" has no effect on an entry of module \"accumulate\"", ":2:"});
+    refused(entry(R"({"module": "accumulate", "set": {"accumulate.limit": true}})"),
+            {"\"accumulate.limit\" has no effect", "\"limit\"", ":2:"});
     refused(entry(R"({"module": "accumulate", "set": {"max-samples": -1}})"), {"max-samples", "-1", ":2:"});
     refused(entry(R"({"module": "accumulate", "tune": {"max-samples": [1, 2]}})"), {"nothing says on which frame"});
     refused(entry(R"({"module": "none"}, {"module": "none"})"), {"two entries are called \"none\""});
