@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 #include "app/options/option_text.h"
 #include "base/error.h"
@@ -32,6 +34,13 @@ void warnOfIdle(const Document& document, const SceneOptions& options, MessageLo
 }
 
 }  // namespace
+
+void requireWholeOutput() {
+    const bool flushed = std::fflush(stdout) == 0;
+    const std::string reason = flushed ? "" : std::string(" (") + std::strerror(errno) + ")";
+    if (!flushed || std::ferror(stdout))
+        throw Error(ErrorKind::Resources, {"standard output could not be written" + reason, "", "", ""});
+}
 
 void applyMachine(const MachineOptions& machine) {
     if (machine.threads > 0) setThreadCount(machine.threads);

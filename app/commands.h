@@ -20,6 +20,9 @@ int runInfo(const SceneOptions& options, bool check, const std::filesystem::path
             const MachineOptions& machine, MessageLog& log, std::stop_token stop);
 int runList(const ListOptions& options, const MachineOptions& machine);
 
+/// Throws Error(Resources) if something of the results did not reach standard output, as on a full disk.
+void requireWholeOutput();
+
 /// Threads, instruction set and memory limit, before anything is computed.
 void applyMachine(const MachineOptions& machine);
 

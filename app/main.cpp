@@ -1,6 +1,4 @@
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <system_error>
 
 #include "app/bench_command.h"
@@ -74,14 +72,6 @@ int runCommand(const CommandLine& line) {
         }
     }
     return 0;
-}
-
-/// Throws Error(Resources) if something of the results did not reach standard output, as on a full disk.
-void requireWholeOutput() {
-    const bool flushed = std::fflush(stdout) == 0;
-    const std::string reason = flushed ? "" : std::string(" (") + std::strerror(errno) + ")";
-    if (!flushed || std::ferror(stdout))
-        throw Error(ErrorKind::Resources, {"standard output could not be written" + reason, "", "", ""});
 }
 
 }  // namespace

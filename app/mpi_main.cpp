@@ -34,14 +34,19 @@ int run(int argc, char** argv, MpiTeam& team, std::stop_token stop) {
     try {
         line = parseCommandLine(argc, argv);
         if (line.command == Command::PrintAndExit) {
-            if (team.leads()) std::fputs(line.text.c_str(), stdout);
+            if (!team.leads()) return 0;
+            std::fputs(line.text.c_str(), stdout);
+            requireWholeOutput();
             return 0;
         }
         if (line.command != Command::Reference)
             throwUsage({"only `reference` runs as several processes", "",
                         "mpirun -n N lumiscope-mpi reference SCENE ...", ""});
         applyMachine(line.machine);
-        return team.leads() ? runLead(line, team, stop) : runOther(line, team, stop);
+        if (!team.leads()) return runOther(line, team, stop);
+        const int code = runLead(line, team, stop);
+        requireWholeOutput();
+        return code;
     } catch (const Error& error) {
         // What all processes find out alike is told once; what only another one finds ends them all.
         const bool alone = !team.leads() && line.command == Command::Reference && error.kind() != ErrorKind::Usage;

@@ -196,6 +196,13 @@ class Reference(CommandTest):
         self.mpi(2, "--samples", "48..144", "--out", "mpi.lumiref")
         self.assertEqual(self.bytes("mpi.lumiref"), self.bytes("alone.lumiref"))
 
+    @unittest.skipUnless(MPI_PROGRAM.exists(), "no MPI here")
+    def test_mpi_on_a_full_disk_under_standard_output(self):
+        with open("/dev/full", "w") as full:
+            process = subprocess.run([MPI_PROGRAM, "--help"], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, timeout=100)
+        self.assertEqual(process.returncode, 5, process.stderr.decode())
+        self.assertIn(b"standard output could not be written", process.stderr)
+
     def mpi(self, ranks, *arguments):
         command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks), str(MPI_PROGRAM), "reference",
                    "cornell", *SIZE, "--quiet", *arguments]
