@@ -87,13 +87,9 @@ private:
         if (node.skin >= 0 && static_cast<size_t>(node.skin) < skins.size())
             addWithoutData(elements_, skins[static_cast<size_t>(node.skin)].inverseBindMatrices, path + "/skin");
         const auto* instancing = extensionOf(node.extensions, "EXT_mesh_gpu_instancing");
-        if (node.mesh < 0 || !instancing || !instancing->Has("attributes")) return;
-        uint64_t most = 0;
-        const std::string attributes = path + "/extensions/EXT_mesh_gpu_instancing/attributes";
-        for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"})
-            if (const auto* found = accessor(integerOf(instancing->Get("attributes"), name, -1)))
-                most = std::max<uint64_t>(most, found->count);
-        spend(instances_, most, attributes);
+        if (node.mesh >= 0 && instancing)
+            spend(instances_, instanceCount(document_, *instancing, path),
+                  path + "/extensions/EXT_mesh_gpu_instancing");
     }
 
     void addAnimation(const tinygltf::Animation& animation, const std::string& path) {

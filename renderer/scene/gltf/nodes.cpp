@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
 #include "base/memory.h"
@@ -15,6 +16,10 @@ namespace lumi::gltf {
 namespace {
 
 std::string nodePath(size_t index) { return "/nodes/" + std::to_string(index); }
+
+std::string attributesPath(const std::string& nodePath) {
+    return nodePath + "/extensions/EXT_mesh_gpu_instancing/attributes";
+}
 
 /// For exactly `more` things, or by half of what is there if that is more, so that many small additions move few.
 template <class Things>
@@ -30,6 +35,23 @@ float within(const Document& document, double number, float least, float most, c
 }
 
 }  // namespace
+
+size_t instanceCount(const Document& document, const tinygltf::Value& extension, const std::string& nodePath) {
+    const std::string path = attributesPath(nodePath);
+    const tinygltf::Value& attributes = extension.Get("attributes");
+    if (!attributes.IsObject() || attributes.Keys().empty()) document.fail(path, "names no accessor");
+    std::optional<size_t> count;
+    for (const std::string& name : attributes.Keys()) {
+        const int index = integerOf(attributes, name, -1);
+        document.checkIndex(index, document.model().accessors.size(), path + "/" + name, "accessors");
+        const size_t own = document.model().accessors[static_cast<size_t>(index)].count;
+        if (own != count.value_or(own))
+            document.fail(path + "/" + name, "has another count than the others", std::to_string(*count),
+                          std::to_string(own));
+        count = own;
+    }
+    return *count;
+}
 
 NodeTree::NodeTree(const Document& document, Scene& scene)
     : document_(document),
@@ -170,10 +192,9 @@ void NodeTree::addInstances(size_t index) {
 }
 
 void NodeTree::addGpuInstances(size_t index, const Instance& prototype, const tinygltf::Value& extension) {
-    const std::string path = nodePath(index) + "/extensions/EXT_mesh_gpu_instancing/attributes";
-    if (!extension.Has("attributes")) document_.fail(path, "is missing");
+    const std::string path = attributesPath(nodePath(index));
+    const size_t count = instanceCount(document_, extension, nodePath(index));
     const tinygltf::Value& attributes = extension.Get("attributes");
-    size_t count = 0;
     std::vector<Vec3> translations, scales;
     std::vector<Vec4> rotations;
     const auto read = [&](const char* name, auto& values) {
@@ -181,10 +202,6 @@ void NodeTree::addGpuInstances(size_t index, const Instance& prototype, const ti
         const int accessor = integerOf(attributes, name, -1);
         if (accessor < 0) return;
         values = readVectors<T>(document_, accessor, path + "/" + name);
-        if (count != 0 && values.size() != count)
-            document_.fail(path + "/" + name, "has another count than the others", std::to_string(count),
-                           std::to_string(values.size()));
-        count = values.size();
     };
     read("TRANSLATION", translations);
     read("ROTATION", rotations);

@@ -7,6 +7,10 @@
 
 namespace lumi::gltf {
 
+/// How many instances EXT_mesh_gpu_instancing makes of a node: the count that all of its accessors have, those of
+/// custom attributes too. Throws Error(BadInput) if they differ or there are none.
+size_t instanceCount(const Document& document, const tinygltf::Value& extension, const std::string& nodePath);
+
 /// The node tree of the chosen scene, flattened parents first.
 class NodeTree {
 public:

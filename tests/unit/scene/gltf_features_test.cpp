@@ -280,22 +280,6 @@ TEST(GltfFeatures, ChoicesAreReadWithoutTheRest) {
     expectError(ErrorKind::BadInput, [&] { gltf::readChoices(folder / "c.gltf"); }, {"c.gltf:2:2", "not valid JSON"});
 }
 
-TEST(GltfFeatures, GpuInstancing) {
-    GltfBuilder file;
-    file.triangle();
-    const int t = file.floats({1, 0, 0, 0, 5, 0}, "VEC3", 3);
-    const int r = file.accessor<int8_t>({0, 0, 0, 127, 0, 0, 127, 0}, "VEC4", 4, 5120);
-    file.json["accessors"][static_cast<size_t>(r)]["normalized"] = true;
-    file.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", t},
-                                                                                    {"ROTATION", r}};
-    file.json["nodes"][0]["translation"] = {0, 0, 3};
-    const auto scene = std::make_shared<Scene>(file.load());
-    ASSERT_EQ(scene->instances.size(), 2u);
-    const auto posed = poseScene(scene, {});
-    expectNear(transformPoint(posed->instances[0].worldFromObject, {1, 0, 0}), {2, 0, 3});
-    expectNear(transformPoint(posed->instances[1].worldFromObject, {1, 0, 0}), {-1, 5, 3});
-}
-
 TEST(GltfFeatures, FiveInfluencesAndJointsOutsideTheScene) {
     GltfBuilder file;
     file.triangle();

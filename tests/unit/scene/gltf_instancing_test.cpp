@@ -1,0 +1,48 @@
+// EXT_mesh_gpu_instancing.
+#include <gtest/gtest.h>
+
+#include "gltf_support.h"
+#include "scene/posed_scene.h"
+
+namespace lumi {
+namespace {
+
+using test::GltfBuilder;
+
+void expectNear(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
+    EXPECT_LT(glm::length(a - b), tolerance) << a.x << ' ' << a.y << ' ' << a.z;
+}
+
+TEST(GltfInstancing, PlacesTheMeshOfItsNode) {
+    GltfBuilder file;
+    file.triangle();
+    const int t = file.floats({1, 0, 0, 0, 5, 0}, "VEC3", 3);
+    const int r = file.accessor<int8_t>({0, 0, 0, 127, 0, 0, 127, 0}, "VEC4", 4, 5120);
+    file.json["accessors"][static_cast<size_t>(r)]["normalized"] = true;
+    file.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", t},
+                                                                                    {"ROTATION", r}};
+    file.json["nodes"][0]["translation"] = {0, 0, 3};
+    const auto scene = std::make_shared<Scene>(file.load());
+    ASSERT_EQ(scene->instances.size(), 2u);
+    const auto posed = poseScene(scene, {});
+    expectNear(transformPoint(posed->instances[0].worldFromObject, {1, 0, 0}), {2, 0, 3});
+    expectNear(transformPoint(posed->instances[1].worldFromObject, {1, 0, 0}), {-1, 5, 3});
+}
+
+TEST(GltfInstancing, InstancesAreAsManyAsAnyAttributeHas) {
+    GltfBuilder file;
+    file.triangle();
+    const int ids = file.floats({7, 8, 9}, "SCALAR", 1), places = file.floats({1, 0, 0, 0, 5, 0}, "VEC3", 3);
+    nlohmann::json& attributes = file.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+    attributes["_ID"] = ids;
+    EXPECT_EQ(file.load().instances.size(), 3u);
+    attributes["TRANSLATION"] = places;
+    file.expectRefused({"/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/_ID", "another count", "3", "2"});
+    attributes = {{"_ID", 99}};
+    file.expectRefused({"/attributes/_ID", "no such entry in /accessors", "99"});
+    attributes = nlohmann::json::object();
+    file.expectRefused({"/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes", "names no accessor"});
+}
+
+}  // namespace
+}  // namespace lumi
