@@ -61,6 +61,7 @@ NodePose poseNodes(const Scene& scene, std::optional<float> time) {
         const Node& node = scene.nodes[i];
         const Mat4 local = localMatrix(node, locals[i]);
         pose.worldFromNode[i] = node.parent < 0 ? local : pose.worldFromNode[static_cast<size_t>(node.parent)] * local;
+        if (node.sharesMorphWeights) pose.morphWeights[i] = pose.morphWeights[static_cast<size_t>(node.parent)];
     }
     return pose;
 }

@@ -22,6 +22,7 @@ struct Node {
     bool hasMatrix = false;  ///< glTF matrices that are no TRS (shear) are kept as they are
     Mat4 matrix{1};
     std::vector<float> morphWeights;  ///< rest weights of the node's mesh
+    bool sharesMorphWeights = false;  ///< its weights are its parent's, whatever moves them
 };
 
 /// Joints of a skinned mesh: node indices, and the matrix from mesh space to each joint's rest space.

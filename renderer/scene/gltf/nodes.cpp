@@ -215,7 +215,7 @@ void NodeTree::addGpuInstances(size_t index, const Instance& prototype, const ti
         if (i % 4096 == 0) document_.pollStop();
         Node node;
         node.parent = prototype.node;
-        node.morphWeights = scene_.nodes[static_cast<size_t>(prototype.node)].morphWeights;
+        node.sharesMorphWeights = true;
         if (!translations.empty()) node.local.translation = translations[i];
         if (!rotations.empty()) node.local.rotation = unitRotation(rotations[i]);
         if (!scales.empty()) node.local.scale = scales[i];

@@ -29,6 +29,24 @@ TEST(GltfInstancing, PlacesTheMeshOfItsNode) {
     expectNear(transformPoint(posed->instances[1].worldFromObject, {1, 0, 0}), {-1, 5, 3});
 }
 
+TEST(GltfInstancing, InstancesMorphAsTheirNodeDoes) {
+    GltfBuilder file;
+    file.triangle();
+    file.primitive()["targets"] = {{{"POSITION", file.floats({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3)}}};
+    const int places = file.floats({1, 0, 0, 0, 5, 0}, "VEC3", 3);
+    file.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = places;
+    const int times = file.floats({0, 2}, "SCALAR", 1), weights = file.floats({0, 1}, "SCALAR", 1);
+    file.json["animations"] = {{{"samplers", {{{"input", times}, {"output", weights}}}},
+                                {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
+    const auto posed = poseScene(std::make_shared<Scene>(file.load()), {.open = 1, .close = 1, .previousOpen = 0});
+    ASSERT_EQ(posed->instances.size(), 2u);
+    for (const PosedInstance& instance : posed->instances) {
+        expectNear(instance.deformed->positions[0], {0, 0, 0.5f});
+        expectNear(instance.deformedPrevious()->positions[0], {0, 0, 0});
+    }
+    EXPECT_EQ(posed->instances[0].deformed, posed->instances[1].deformed);
+}
+
 TEST(GltfInstancing, InstancesAreAsManyAsAnyAttributeHas) {
     GltfBuilder file;
     file.triangle();
