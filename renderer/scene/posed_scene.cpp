@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -143,15 +144,16 @@ void openShutter(const ShutterTimes& times, bool cut, const PosedScene* before, 
 
 size_t PosedScene::byteCount() const {
     size_t bytes = instances.size() * sizeof(PosedInstance) + lights.size() * sizeof(PosedLight);
-    const auto sizeOf = [](const DeformedVertices& v) {
-        return sizeof(Vec3) * (v.positions.size() + v.normals.size() + v.tangents.size());
+    std::unordered_set<const DeformedVertices*> counted{nullptr};
+    const auto addShape = [&](const std::shared_ptr<const DeformedVertices>& shape) {
+        if (!counted.insert(shape.get()).second) return;
+        bytes += sizeof(Vec3) * (shape->positions.size() + shape->normals.size() + shape->tangents.size());
     };
     for (const PosedInstance& instance : instances) {
-        if (instance.deformed) bytes += sizeOf(*instance.deformed);
+        addShape(instance.deformed);
         if (instance.motion) bytes += sizeof(PosedMotion);
-        // The first of a track's shapes is that of shutter open.
         const ShutterTrack* track = instance.track();
-        for (size_t i = 1; track && i < track->deformed.size(); ++i) bytes += sizeOf(*track->deformed[i]);
+        for (size_t i = 0; track && i < track->deformed.size(); ++i) addShape(track->deformed[i]);
     }
     return bytes;
 }

@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "scene/bounds.h"
-#include "scene/deform.h"
 
 namespace lumi {
 namespace {
@@ -113,8 +112,7 @@ bool deformsAlike(const Instance& instance, const PosedMoment& a, const PosedMom
 }
 
 std::shared_ptr<const DeformedVertices> deformAt(const Instance& instance, const PosedMoment& moment) {
-    return std::make_shared<const DeformedVertices>(
-        deform(*instance.mesh, morphWeightsOf(instance, moment), jointsOf(instance, moment)));
+    return moment.shapes->of(instance, morphWeightsOf(instance, moment), jointsOf(instance, moment));
 }
 
 std::vector<PosedMoment> shutterMoments(const Scene& scene, float open, float close,

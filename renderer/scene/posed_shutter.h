@@ -5,6 +5,7 @@
 
 #include "scene/node_pose.h"
 #include "scene/posed_scene.h"
+#include "scene/shared_shapes.h"
 
 namespace lumi {
 
@@ -12,6 +13,7 @@ namespace lumi {
 struct PosedMoment {
     NodePose nodes;
     std::vector<std::vector<Mat4>> joints;  ///< for each skin
+    std::shared_ptr<SharedShapes> shapes = std::make_shared<SharedShapes>();
 };
 
 PosedMoment poseMoment(const Scene& scene, float time);

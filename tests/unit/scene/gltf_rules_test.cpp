@@ -1,10 +1,10 @@
 // What the specification of glTF 2.0 asks of who reads a file, and what it forbids the file.
 #include <gtest/gtest.h>
 
-#include "base/memory.h"
 #include "gltf_support.h"
 #include "scene/deform.h"
 #include "scene/node_pose.h"
+#include "support/memory_limit.h"
 
 namespace lumi {
 namespace {
@@ -229,13 +229,6 @@ TEST(GltfRules, BytesThatAreNoTextAreShownAsNumbers) {
                       {"a.gltf:1:28", "ill-formed UTF-8", "\\xe4"});
 }
 
-/// Puts the memory limit back.
-struct MemoryLimit {
-    explicit MemoryLimit(uint64_t bytes) { setMemoryLimit(bytes); }
-    ~MemoryLimit() { setMemoryLimit(before); }
-    uint64_t before = memoryLimit();
-};
-
 /// Primitives of 100,000 triangles over the same indices.
 GltfBuilder& sharing(GltfBuilder& file, int primitives) {
     file.triangle();
@@ -250,7 +243,7 @@ TEST(GltfRules, SharedIndicesAreCountedBeforeTheyAreRead) {
     GltfBuilder many, few;
     sharing(many, 100).expectRefused({"/meshes/0/primitives/", "absurd count of triangles", "and 100000 here"});
     EXPECT_EQ(sharing(few, 20).load().triangleCount(), 2000000);
-    const MemoryLimit limit(residentBytes() + (uint64_t(16) << 20));
+    const test::MemoryLimit limit(uint64_t(16) << 20);
     few.expectRefused({"the geometry of test.glb needs 30.5 MiB", "memory limit"}, ErrorKind::Resources);
 }
 

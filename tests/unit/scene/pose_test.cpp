@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "base/parallel.h"
 #include "scene/deform.h"
 #include "scene/node_pose.h"
+#include "support/expect_error.h"
+#include "support/memory_limit.h"
 
 namespace lumi {
 namespace {
@@ -233,6 +237,41 @@ TEST(Pose, MorphWeightsAreAnimated) {
     const auto posed = poseScene(scene, {.open = 0.5f, .close = 0.5f, .previousOpen = 0.25f});
     expectNear(posed->instances[0].deformed->positions[0], {0, 1, 0});
     expectNear(posed->instances[0].deformedPrevious()->positions[0], {0, 0.5f, 0});
+}
+
+/// Three nodes with one mesh that morphs: the first two with equal weights, all moved by one animation.
+TEST(Pose, WhatBendsAlikeIsHeldOnce) {
+    auto scene = slidingScene();
+    auto mesh = std::make_shared<Mesh>(*bar());
+    constexpr size_t kVertices = 100000;
+    mesh->positions.resize(kVertices);
+    mesh->normals.clear();
+    mesh->tangents.clear();
+    mesh->morphTargets = {{std::vector<Vec3>(kVertices, Vec3(0, 1, 0)), {}, {}}};
+    scene->instances.assign(3, scene->instances[0]);
+    scene->nodes.resize(4);
+    for (int i = 0; i < 3; ++i) {
+        AnimationChannel weights;
+        weights.node = i + 1;
+        weights.property = AnimatedProperty::MorphWeights;
+        weights.components = 1;
+        weights.times = {0, 1};
+        weights.values = {0, i < 2 ? 2.0f : 3.0f};
+        scene->animations.push_back({{weights}, 1, true});
+        scene->instances[static_cast<size_t>(i)].mesh = mesh;
+        scene->instances[static_cast<size_t>(i)].node = i + 1;
+    }
+    const auto posed = poseScene(scene, {.open = 0.25f, .close = 0.5f, .previousOpen = 0.125f});
+    const auto& [first, twin, other] = std::tie(posed->instances[0], posed->instances[1], posed->instances[2]);
+    EXPECT_EQ(first.deformed, twin.deformed);
+    EXPECT_EQ(first.deformedPrevious(), twin.deformedPrevious());
+    EXPECT_NE(first.deformed, other.deformed);
+    ASSERT_TRUE(first.track() && twin.track());
+    EXPECT_EQ(first.track()->deformed, twin.track()->deformed);
+    const size_t shape = kVertices * sizeof(Vec3), moments = first.track()->deformed.size();
+    EXPECT_LT(posed->byteCount(), 2 * moments * shape + 100000);
+    const test::MemoryLimit limit(shape / 2);
+    test::expectError(ErrorKind::Resources, [&] { poseScene(scene, {}); }, {"posing", "memory limit"});
 }
 
 TEST(Pose, LightsRideOnTheirNodes) {

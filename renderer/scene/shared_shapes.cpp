@@ -1,0 +1,29 @@
+#include "scene/shared_shapes.h"
+
+#include <algorithm>
+
+#include "base/memory.h"
+#include "scene/deform.h"
+
+namespace lumi {
+
+std::shared_ptr<const DeformedVertices> SharedShapes::of(const Instance& instance, std::span<const float> weights,
+                                                         std::span<const Mat4> joints) {
+    const Mesh& mesh = *instance.mesh;
+    weights = weights.first(std::min(weights.size(), mesh.morphTargets.size()));
+    const std::string weightBytes(reinterpret_cast<const char*>(weights.data()), weights.size_bytes());
+    const Key key{&mesh, joints.empty() ? -1 : instance.skin, weightBytes};
+    {
+        const std::lock_guard lock(mutex_);
+        if (const auto known = shapes_.find(key); known != shapes_.end()) return known->second;
+    }
+    // Two threads may make the same one. Neither waits for the other: a worker that waits inside a loop of its own may
+    // have taken up the very work that it waits for.
+    checkMemory("posing \"" + instance.name + '"',
+                sizeof(Vec3) * (mesh.positions.size() + mesh.normals.size() + mesh.tangents.size()));
+    auto shape = std::make_shared<const DeformedVertices>(deform(mesh, weights, joints));
+    const std::lock_guard lock(mutex_);
+    return shapes_.try_emplace(key, std::move(shape)).first->second;
+}
+
+}  // namespace lumi
