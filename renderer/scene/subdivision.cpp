@@ -7,6 +7,8 @@
 #include <opensubdiv/bfr/tessellation.h>
 #include <opensubdiv/far/topologyDescriptor.h>
 
+#include <algorithm>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -29,6 +31,10 @@ using SharedCache = Bfr::SurfaceFactoryCacheThreaded<std::shared_mutex, std::sha
                                                      std::unique_lock<std::shared_mutex>>;
 using Factory = Bfr::RefinerSurfaceFactory<SharedCache>;
 
+void checkStop(const std::stop_token& stop, const std::string& where) {
+    if (stop.stop_requested()) throw Error(ErrorKind::Interrupted, {"loading was stopped", where, "", ""});
+}
+
 /// Where one base face's vertices, triangles and weights go.
 struct FaceSpan {
     uint32_t firstVertex = 0, vertexCount = 0;
@@ -36,9 +42,36 @@ struct FaceSpan {
     std::vector<uint32_t> controls;  // cage vertices that the face's surface depends on
 };
 
-std::vector<FaceSpan> planFaces(const Factory& factory, int faceCount, int rate, const std::string& where) {
+/// Bytes of a weight of the finished table, and of one while its face is tessellated: see SubdivisionSurface.
+constexpr uint64_t kWeightBytes = sizeof(uint32_t) + 3 * sizeof(float), kFaceWeightBytes = 3 * sizeof(float);
+/// What a vertex takes beside its weights.
+constexpr uint64_t kVertexBytes = 100;
+
+/// About how many cage vertices each face's surface depends on: those of all faces at its corners. Exact among quads
+/// inside of a cage; a corner where many faces meet adds them all to each of these.
+std::vector<uint64_t> countControls(const Far::TopologyLevel& level) {
+    std::vector<int64_t> added(static_cast<size_t>(level.GetNumVertices()));
+    for (int v = 0; v < level.GetNumVertices(); ++v) {
+        added[static_cast<size_t>(v)] = level.GetVertexEdges(v).size();
+        for (const int face : level.GetVertexFaces(v))
+            added[static_cast<size_t>(v)] += level.GetFaceVertices(face).size() - 3;
+    }
+    std::vector<uint64_t> controls(static_cast<size_t>(level.GetNumFaces()));
+    for (int face = 0; face < level.GetNumFaces(); ++face) {
+        const auto corners = level.GetFaceVertices(face);
+        int64_t sum = 0;
+        for (const int v : corners) sum += added[static_cast<size_t>(v)] - corners.size();
+        controls[static_cast<size_t>(face)] = static_cast<uint64_t>(std::max<int64_t>(sum, corners.size()));
+    }
+    return controls;
+}
+
+std::vector<FaceSpan> planFaces(const Factory& factory, const Far::TopologyLevel& level, int rate,
+                                const std::string& where) {
+    const int faceCount = level.GetNumFaces();
+    const std::vector<uint64_t> controls = countControls(level);
     std::vector<FaceSpan> spans(static_cast<size_t>(faceCount));
-    uint64_t vertices = 0, triangles = 0;
+    uint64_t vertices = 0, triangles = 0, weights = 0;
     for (int face = 0; face < faceCount; ++face) {
         FaceSpan& span = spans[static_cast<size_t>(face)];
         span.firstVertex = static_cast<uint32_t>(vertices);
@@ -49,10 +82,12 @@ std::vector<FaceSpan> planFaces(const Factory& factory, int faceCount, int rate,
         span.triangleCount = static_cast<uint32_t>(pattern.GetNumFacets());
         vertices += span.vertexCount;
         triangles += span.triangleCount;
+        weights += span.vertexCount * controls[static_cast<size_t>(face)];
     }
     if (triangles > uint64_t(1) << 30)
         throwBadInput({"tessellates into too many triangles", where, "at most 2^30", fmt::format("{}", triangles)});
-    checkMemory(fmt::format("tessellating {}", where), vertices * 300 + triangles * 20);
+    checkMemory(fmt::format("tessellating {}", where),
+                vertices * kVertexBytes + triangles * 20 + weights * (kWeightBytes + kFaceWeightBytes));
     return spans;
 }
 
@@ -113,9 +148,24 @@ private:
     int rate_;
 };
 
-/// Concatenates the faces' weights into one table of rows.
-void gatherRows(const std::vector<FaceSpan>& spans, const std::vector<std::vector<float>>& rows,
+/// Makes room for `more` weights in the table of rows.
+void reserveWeights(SubdivisionSurface& out, uint64_t more, const std::string& where) {
+    const uint64_t there = out.weight.size(), room = out.weight.capacity();
+    if (there + more > std::numeric_limits<uint32_t>::max())
+        throwBadInput({"a vertex where too many faces meet, for so fine a tessellation", where, "", ""});
+    if (room - there >= more) return;
+    const uint64_t wanted = std::max(there + more, 2 * room);
+    checkMemory(fmt::format("tessellating {}", where), wanted * kWeightBytes);
+    out.cageVertex.reserve(wanted);
+    for (std::vector<float>* table : {&out.weight, &out.tangentU, &out.tangentV}) table->reserve(wanted);
+}
+
+/// Concatenates the faces' weights into one table of rows, and frees them.
+void gatherRows(const std::vector<FaceSpan>& spans, std::vector<std::vector<float>> rows, const std::string& where,
                 SubdivisionSurface& out) {
+    uint64_t weights = 0;
+    for (const std::vector<float>& ofFace : rows) weights += ofFace.size() / 3;
+    reserveWeights(out, weights, where);
     out.first.assign(1, 0);
     for (size_t face = 0; face < spans.size(); ++face) {
         const size_t n = spans[face].controls.size();
@@ -130,6 +180,7 @@ void gatherRows(const std::vector<FaceSpan>& spans, const std::vector<std::vecto
             }
             out.first.push_back(static_cast<uint32_t>(out.weight.size()));
         }
+        rows[face] = {};
     }
 }
 
@@ -167,7 +218,7 @@ SubdivisionSurface tessellateFaces(const SubdivisionCage& cage, const Far::Topol
     options.EnableCaching(shareTopology);
     const Factory factory(refiner, options);
     const auto faceCount = static_cast<int>(cage.faceSizes.size());
-    std::vector<FaceSpan> spans = planFaces(factory, faceCount, rate, where);
+    std::vector<FaceSpan> spans = planFaces(factory, refiner.GetLevel(0), rate, where);
 
     SubdivisionSurface out;
     const size_t vertices = spans.empty() ? 0 : spans.back().firstVertex + spans.back().vertexCount;
@@ -190,14 +241,15 @@ SubdivisionSurface tessellateFaces(const SubdivisionCage& cage, const Far::Topol
                     tessellator.run(static_cast<int>(face), spans[static_cast<size_t>(face)], rows, out);
         },
         stop);
-    if (stop.stop_requested()) throw Error(ErrorKind::Interrupted, {"loading was stopped", where, "", ""});
-    gatherRows(spans, rows, out);
+    checkStop(stop, where);
+    gatherRows(spans, std::move(rows), where, out);
     findShared(refiner.GetLevel(0), factory, rate, spans, out);
     return out;
 }
 
 /// Rows over the refined cage become rows over the coarse one.
-void composeRows(const std::vector<RefinedCage::Row>& vertices, SubdivisionSurface& out) {
+void composeRows(const std::vector<RefinedCage::Row>& vertices, const std::string& where, const std::stop_token& stop,
+                 SubdivisionSurface& out) {
     struct Sums {
         float weight = 0, u = 0, v = 0;
     };
@@ -205,6 +257,7 @@ void composeRows(const std::vector<RefinedCage::Row>& vertices, SubdivisionSurfa
     out = {};
     out.first.assign(1, 0);
     for (size_t row = 0; row + 1 < fine.first.size(); ++row) {
+        checkStop(stop, where);
         std::map<uint32_t, Sums> sums;
         for (uint32_t k = fine.first[row]; k < fine.first[row + 1]; ++k)
             for (const auto& [vertex, weight] : vertices[fine.cageVertex[k]].weights) {
@@ -213,6 +266,7 @@ void composeRows(const std::vector<RefinedCage::Row>& vertices, SubdivisionSurfa
                 sum.u += weight * fine.tangentU[k];
                 sum.v += weight * fine.tangentV[k];
             }
+        reserveWeights(out, sums.size(), where);
         for (const auto& [vertex, sum] : sums) {
             out.cageVertex.push_back(vertex);
             out.weight.push_back(sum.weight);
@@ -261,7 +315,7 @@ SubdivisionSurface tessellateSafely(const SubdivisionCage& cage, int rate, int l
         }
         out.triangleFace[t] = refined.parentFace[out.triangleFace[t]];
     }
-    composeRows(refined.vertices, out);
+    composeRows(refined.vertices, where, stop, out);
     return out;
 }
 

@@ -12,6 +12,8 @@
 
 #include "base/error.h"
 #include "scene/obj/cage.h"
+#include "support/expect_error.h"
+#include "support/memory_limit.h"
 #include "support/refined_cage.h"
 
 namespace lumi::test {
@@ -131,6 +133,24 @@ TEST(Subdivision, EveryAssetCageTessellates) {
         checkMesh(surface.mesh, entry.path().string());
         EXPECT_EQ(log.warnings().empty(), entry.path().string().find("hedit") == std::string::npos) << entry.path();
     }
+}
+
+/// Where many faces meet, each of them depends on all the others.
+TEST(Subdivision, TheWeightsOfACrowdedVertexCountAgainstTheMemoryLimit) {
+    const auto fan = [](int quads) {
+        std::string text = "v 0 0 0\n";
+        for (int i = 0; i < 2 * quads; ++i) {
+            const float angle = kPi * static_cast<float>(i) / static_cast<float>(quads);
+            text += "v " + std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " 0\n";
+        }
+        for (int i = 0; i < quads; ++i)
+            text += "f 1 " + std::to_string(2 + 2 * i) + " " + std::to_string(3 + 2 * i) + " " +
+                    std::to_string(2 + (2 * i + 2) % (2 * quads)) + "\n";
+        return cageOf(text, "fan.obj");
+    };
+    const MemoryLimit limit(uint64_t(64) << 20);
+    EXPECT_EQ(tessellate(fan(16), 8, "fan").mesh.triangles.size(), 16u * 8 * 8 * 2);
+    expectError(ErrorKind::Resources, [&] { tessellate(fan(400), 8, "fan"); }, {"tessellating fan", "memory limit"});
 }
 
 TEST(Subdivision, RefusesBrokenCages) {
