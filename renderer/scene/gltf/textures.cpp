@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "image/decode.h"
 #include "scene/gltf/values.h"
@@ -109,9 +110,11 @@ Texture TextureLibrary::texture(int index, int texCoord, const tinygltf::Extensi
 }
 
 Texture TextureLibrary::roughnessFromGloss(const Texture& specularGloss, float glossFactor) {
-    auto image = std::make_shared<TextureImage>();
-    image->name = specularGloss.image->name + " (roughness)";
-    glosses_.push_back({specularGloss.image, image, glossFactor});
+    std::shared_ptr<TextureImage>& image = glosses_[{specularGloss.image, glossFactor}];
+    if (!image) {
+        image = std::make_shared<TextureImage>();
+        image->name = specularGloss.image->name + " (roughness)";
+    }
     Texture texture = specularGloss;
     texture.image = image;
     return texture;
@@ -196,16 +199,26 @@ void TextureLibrary::load(const std::function<void(float)>& step) {
         step(static_cast<float>(++done) / static_cast<float>(queue.size()));
     });
     warnUnsupported();
-    for (const Gloss& gloss : glosses_) {
-        TextureImage::Level level = gloss.from->levels.front();
+    fillGlosses();
+}
+
+void TextureLibrary::fillGlosses() {
+    std::vector<std::pair<const Gloss, std::shared_ptr<TextureImage>>*> queue;
+    for (auto& gloss : glosses_) queue.push_back(&gloss);
+    parallelFor(static_cast<int64_t>(queue.size()), [&](int64_t g) {
+        document_.pollStop();
+        const auto& [gloss, image] = *queue[static_cast<size_t>(g)];
+        const auto& [from, factor] = gloss;
+        checkMemory("the texture " + image->name, from->byteCount());
+        TextureImage::Level level = from->levels.front();
         for (size_t i = 0; i < level.bytes.size(); i += 4) {
-            const float roughness = 255 - gloss.factor * static_cast<float>(level.bytes[i + 3]);
+            const float roughness = 255 - factor * static_cast<float>(level.bytes[i + 3]);
             level.bytes[i + 1] = static_cast<uint8_t>(std::clamp(roughness + 0.5f, 0.0f, 255.0f));
             level.bytes[i + 2] = 255;
         }
-        gloss.to->levels.push_back(std::move(level));
-        buildMips(*gloss.to);
-    }
+        image->levels.push_back(std::move(level));
+        buildMips(*image);
+    });
 }
 
 uint64_t TextureLibrary::digest() const {

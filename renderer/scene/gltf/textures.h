@@ -2,6 +2,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include "scene/gltf/document.h"
 #include "scene/texture.h"
@@ -37,12 +38,10 @@ private:
         std::shared_ptr<TextureImage> images[3];  ///< by TextureUse
         uint64_t digest = 0;
     };
-    struct Gloss {
-        std::shared_ptr<const TextureImage> from;
-        std::shared_ptr<TextureImage> to;
-        float factor = 1;
-    };
+    /// What a roughness image is made of: the image with the gloss, and the material's factor.
+    using Gloss = std::pair<std::shared_ptr<const TextureImage>, float>;
     void loadImage(int index, Entry& entry) const;
+    void fillGlosses();
     void fill(Entry& entry, TextureImage::Level level) const;
     std::shared_ptr<TextureImage> standIn(TextureUse use) const;
     static void showStandIn(Entry& entry);
@@ -51,7 +50,7 @@ private:
 
     const Document& document_;
     std::map<int, Entry> entries_;  ///< by glTF image
-    std::vector<Gloss> glosses_;
+    std::map<Gloss, std::shared_ptr<TextureImage>> glosses_;
     mutable std::mutex mutex_;
     mutable std::map<std::string, int> unsupported_;  ///< textures and images of each format that is not read
 };

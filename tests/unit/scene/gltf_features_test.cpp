@@ -164,6 +164,24 @@ TEST(GltfFeatures, SpecularGlossiness) {
     expectNear(m.specularColor, {1, 2, 0.5f});
 }
 
+TEST(GltfFeatures, MaterialsOfOneGlossShareTheirRoughness) {
+    GltfBuilder file;
+    file.triangle();
+    file.json["images"] = {{{"uri", kRedPng}}};
+    file.json["textures"] = {{{"source", 0}}};
+    for (const double gloss : {1.0, 0.5, 1.0})
+        file.json["materials"].push_back(
+            {{"extensions",
+              {{"KHR_materials_pbrSpecularGlossiness",
+                {{"specularGlossinessTexture", {{"index", 0}}}, {"glossinessFactor", gloss}}}}}});
+    const Scene scene = file.load();
+    const auto image = [&](size_t i) { return scene.materials[i].metallicRoughnessTexture.image; };
+    EXPECT_EQ(image(0), image(2));
+    EXPECT_NE(image(0), image(1));
+    EXPECT_EQ(image(0)->levels[0].bytes[1], 128) << "the image is half transparent";
+    EXPECT_EQ(image(1)->levels[0].bytes[1], 192);
+}
+
 TEST(GltfFeatures, PunctualLightsOneToOne) {
     GltfBuilder file;
     file.triangle();
