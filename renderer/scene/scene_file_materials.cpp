@@ -90,7 +90,8 @@ struct TextureRequest {
     const TextureKey* key;
     bool mipmaps = true;
     Texture placement;  ///< the image comes with loadTextures()
-    size_t image = 0;   ///< index into the distinct images
+
+    SceneFileContext::ImageKey imageKey() const { return {file, generated, srgb && !generator, mipmaps}; }
 };
 
 Texture placedTexture(const TexturePlacement& placement) {
@@ -152,17 +153,11 @@ std::shared_ptr<TextureImage> decodeFile(const std::vector<uint8_t>& bytes, cons
     return image;
 }
 
-/// Loads or generates each distinct image once; a file used both as colour and as data counts twice.
+/// Loads or generates each image that is not there yet; a file used both as colour and as data counts twice.
 void loadTextures(SceneFileContext& context, std::vector<TextureRequest>& requests) {
-    std::map<std::tuple<std::string, std::string, bool, bool>, size_t> known;
     std::vector<const TextureRequest*> distinct;
-    for (TextureRequest& request : requests) {
-        const bool srgb = request.generator ? false : request.srgb;
-        const auto [place, isNew] =
-            known.emplace(std::tuple(request.file, request.generated, srgb, request.mipmaps), distinct.size());
-        request.image = place->second;
-        if (isNew) distinct.push_back(&request);
-    }
+    for (const TextureRequest& request : requests)
+        if (context.images.try_emplace(request.imageKey()).second) distinct.push_back(&request);
 
     std::vector<ImagePtr> images(distinct.size());
     std::vector<std::string> digests(distinct.size());
@@ -192,7 +187,8 @@ void loadTextures(SceneFileContext& context, std::vector<TextureRequest>& reques
             throw Error(errors[i]->kind(), {fmt::format("\"{}\": {}", distinct[i]->key->key, errors[i]->what()),
                                             context.tree.where(distinct[i]->value->at), "", ""});
     for (const std::string& text : digests) context.digests += text;
-    for (TextureRequest& request : requests) request.placement.image = images[request.image];
+    for (size_t i = 0; i < distinct.size(); ++i) context.images[distinct[i]->imageKey()] = std::move(images[i]);
+    for (TextureRequest& request : requests) request.placement.image = context.images.at(request.imageKey());
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "scene/asset_folder.h"
@@ -26,6 +28,9 @@ struct SceneFileContext {
     std::map<std::string, PlacedAsset> assets;  ///< loaded
     std::map<std::string, int> instanceNodes;   ///< index into scene.nodes
     std::string digests;                        ///< of every file that was read, in order
+    /// What makes two images the same: file, generator with its parameters, sRGB, mip levels.
+    using ImageKey = std::tuple<std::string, std::string, bool, bool>;
+    std::map<ImageKey, std::shared_ptr<const TextureImage>> images = {};  ///< read or generated so far
 
     /// `name` relative to the scene file's folder, or an asset (scene/asset_folder.h). Throws what findAsset() throws.
     std::filesystem::path resolve(const std::string& name) const {

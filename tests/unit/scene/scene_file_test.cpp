@@ -225,6 +225,16 @@ TEST(SceneFile, EqualGeneratedTexturesAreMadeOnce) {
     EXPECT_EQ(scene.materials[1].baseColorTexture.scale, Vec2(1));
 }
 
+TEST(SceneFile, LightsShareTheImageThatTheyShow) {
+    const Scene scene =
+        parseScene(R"({"version": 1, "materials": {"a": {"base-color-texture": {"checker": {}}}}, "lights": {
+      "l": {"rectangle": {"size": [1, 1]}, "radiance": [1, 1, 1], "radiance-texture": {"checker": {}}},
+      "m": {"disk": {"radius": 1}, "radiance": [1, 1, 1], "radiance-texture": {"checker": {}, "scale": 2}}}})");
+    EXPECT_EQ(scene.lights[0].radianceTexture.image, scene.lights[1].radianceTexture.image);
+    EXPECT_EQ(scene.lights[0].radianceTexture.image, scene.materials[0].baseColorTexture.image);
+    EXPECT_EQ(scene.lights[1].radianceTexture.scale, Vec2(2));
+}
+
 constexpr const char* kCube = R"(v -1 -1 -1
 v 1 -1 -1
 v 1 1 -1
