@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include "scene/procedural/primitives.h"
 
@@ -53,6 +55,10 @@ bool wornOtherwise(const Scene& scene, uint32_t material) {
     return false;
 }
 
+/// Lights for which this is equal have the same body.
+using Size = std::tuple<LightType, float, float, float>;
+Size sizeOf(const Light& light) { return {light.type, light.radius, light.size.x, light.size.y}; }
+
 bool sameShape(const Mesh& a, const Mesh& b) { return a.positions == b.positions; }
 
 }  // namespace
@@ -70,19 +76,26 @@ std::shared_ptr<const Mesh> lightBody(const Light& light) {
 }
 
 void addLightBodies(Scene& scene) {
+    std::vector<int> shownBy(scene.lights.size(), -1);
+    for (size_t k = 0; k < scene.instances.size(); ++k)
+        if (const int light = scene.instances[k].light; light >= 0)
+            shownBy[static_cast<size_t>(light)] = static_cast<int>(k);
+    std::map<Size, std::shared_ptr<const Mesh>> bodies;
+    int material = -1;
     for (size_t i = 0; i < scene.lights.size(); ++i) {
-        std::shared_ptr<const Mesh> body = lightBody(scene.lights[i]);
+        const Light& light = scene.lights[i];
+        const auto [place, isNew] = bodies.try_emplace(sizeOf(light));
+        std::shared_ptr<const Mesh>& body = place->second;
+        if (isNew) body = lightBody(light);
         if (!body) continue;
-        const auto shown = std::find_if(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
-            return instance.light == static_cast<int>(i);
-        });
-        if (shown != scene.instances.end()) {
-            if (!sameShape(*shown->mesh, *body)) shown->mesh = std::move(body);
+        if (shownBy[i] >= 0) {
+            std::shared_ptr<const Mesh>& shown = scene.instances[static_cast<size_t>(shownBy[i])].mesh;
+            if (sameShape(*shown, *body)) body = shown;
+            else shown = body;
             continue;
         }
-        const int material = bodyMaterial(scene);
-        scene.instances.push_back(
-            {scene.lights[i].name, std::move(body), scene.lights[i].node, -1, material, static_cast<int>(i)});
+        if (material < 0) material = bodyMaterial(scene);
+        scene.instances.push_back({light.name, body, light.node, -1, material, static_cast<int>(i)});
     }
 }
 

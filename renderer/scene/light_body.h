@@ -11,8 +11,8 @@ namespace lumi {
 std::shared_ptr<const Mesh> lightBody(const Light& light);
 
 /// Gives every light with extent that has none an instance that shows it (Instance::light, on the light's node), all
-/// wearing one black material named "light body". Bodies that stand already are made again if their light's size
-/// changed; the rest of the scene keeps its order.
+/// wearing one black material named "light body"; lights of one kind and size share a mesh. Bodies that stand already
+/// are made again if their light's size changed; the rest of the scene keeps its order.
 void addLightBodies(Scene& scene);
 
 /// For each material of the scene: is it the one that addLightBodies() made, worn by bodies alone? It says nothing of

@@ -259,5 +259,21 @@ TEST(LightBody, BodiesAreAddedOnceAndFollowTheirLight) {
     EXPECT_EQ(scene.materials.size(), 1u);
 }
 
+TEST(LightBody, LightsOfOneSizeShareTheirs) {
+    Scene scene;
+    scene.nodes.emplace_back();
+    Light ball;
+    ball.type = LightType::Sphere;
+    ball.node = 0;
+    scene.lights.assign(3, ball);
+    scene.lights[1].radius = 2 * ball.radius;
+    for (int time = 0; time < 2; ++time) {
+        addLightBodies(scene);
+        ASSERT_EQ(scene.instances.size(), 3u);
+        EXPECT_EQ(scene.instances[0].mesh, scene.instances[2].mesh);
+        EXPECT_NE(scene.instances[0].mesh, scene.instances[1].mesh);
+    }
+}
+
 }  // namespace
 }  // namespace lumi::test
