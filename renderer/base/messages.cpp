@@ -11,15 +11,14 @@ void MessageLog::add(Severity severity, std::string text) {
     {
         std::lock_guard lock(mutex_);
         message.serial = ++serial_;
-        const auto same = std::find_if(messages_.begin(), messages_.end(), [&](const Message& m) {
-            return m.severity == severity && m.text == message.text;
-        });
-        if (same != messages_.end()) {
-            ++same->repeats;
-            same->serial = message.serial;
+        auto& known = known_[static_cast<size_t>(severity)];
+        if (const auto same = known.find(message.text); same != known.end()) {
+            ++same->second->repeats;
+            same->second->serial = message.serial;
             return;
         }
         messages_.push_back(message);
+        known.emplace(messages_.back().text, &messages_.back());
         listener = listener_;
     }
     if (listener) listener(message);
@@ -27,7 +26,7 @@ void MessageLog::add(Severity severity, std::string text) {
 
 std::vector<Message> MessageLog::messages() const {
     std::unique_lock lock(mutex_);
-    std::vector<Message> latest = messages_;
+    std::vector<Message> latest(messages_.begin(), messages_.end());
     lock.unlock();
     std::sort(latest.begin(), latest.end(), [](const Message& a, const Message& b) { return a.serial < b.serial; });
     return latest;
@@ -48,6 +47,7 @@ std::vector<std::string> MessageLog::warnings() const {
 
 void MessageLog::clear() {
     std::lock_guard lock(mutex_);
+    for (auto& known : known_) known.clear();
     messages_.clear();
     ++serial_;
 }

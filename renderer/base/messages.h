@@ -1,8 +1,11 @@
 #pragma once
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <mutex>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace lumi {
@@ -38,7 +41,8 @@ public:
 
 private:
     mutable std::mutex mutex_;
-    std::vector<Message> messages_;  ///< in the order in which they were reported first
+    std::deque<Message> messages_;                             ///< in the order in which they were reported first
+    std::unordered_map<std::string_view, Message*> known_[3];  ///< by Severity; both refer to `messages_`
     uint64_t serial_ = 0;
     std::function<void(const Message&)> listener_;
 };
