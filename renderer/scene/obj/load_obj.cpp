@@ -127,7 +127,7 @@ std::vector<std::shared_ptr<Mesh>> buildMeshes(const ParsedObj& parsed, const st
             std::shared_ptr<Mesh>& mesh = meshes[static_cast<size_t>(i)];
             if (!subdivided)
                 mesh = std::make_shared<Mesh>(
-                    meshFromShape(parsed.attributes, parsed.shapes[static_cast<size_t>(i)], fallback, where));
+                    meshFromShape(parsed.attributes, parsed.shapes[static_cast<size_t>(i)], fallback, where, stop));
             checkMesh(*mesh, where);
             const auto needsTangents = [&](uint32_t m) { return bool(materials[m].normalTexture); };
             const bool any = std::any_of(mesh->triangleMaterial.begin(), mesh->triangleMaterial.end(), needsTangents) ||

@@ -13,6 +13,8 @@
 namespace lumi {
 namespace {
 
+constexpr size_t kPollStride = 256;  ///< faces between two looks at the stop
+
 /// What makes two corners the same vertex. `group` tells corners without normal apart: smoothing group, or face.
 struct Corner {
     int position = -1, uv = -1, normal = -1;
@@ -36,8 +38,8 @@ Vec3 weightedNormal(const Vec3& here, const Vec3& next, const Vec3& last) {
 class ShapeReader {
 public:
     ShapeReader(const tinyobj::attrib_t& attributes, const tinyobj::shape_t& shape, uint32_t fallbackMaterial,
-                const std::string& where)
-        : attributes_(attributes), source_(shape.mesh), fallback_(fallbackMaterial), where_(where) {
+                const std::string& where, const std::stop_token& stop)
+        : attributes_(attributes), source_(shape.mesh), fallback_(fallbackMaterial), where_(where), stop_(stop) {
         mesh_.name = shape.name;
         const size_t corners =
             std::accumulate(source_.num_face_vertices.begin(), source_.num_face_vertices.end(), size_t(0));
@@ -56,6 +58,8 @@ public:
     Mesh read() {
         size_t first = 0;
         for (size_t face = 0; face < source_.num_face_vertices.size(); ++face) {
+            if (face % kPollStride == 0 && stop_.stop_requested())
+                throw Error(ErrorKind::Interrupted, {.what = "loading was stopped", .where = where_});
             const size_t count = source_.num_face_vertices[face];
             if (count >= 3) addFace(face, first, count);
             first += count;
@@ -147,6 +151,7 @@ private:
     const tinyobj::mesh_t& source_;
     uint32_t fallback_;
     const std::string& where_;
+    const std::stop_token& stop_;
     bool anyUv_ = false, anyNormal_ = false, anySmooth_ = false;
     Mesh mesh_;
     std::unordered_map<Corner, uint32_t, CornerHash> vertices_;
@@ -157,8 +162,8 @@ private:
 }  // namespace
 
 Mesh meshFromShape(const tinyobj::attrib_t& attributes, const tinyobj::shape_t& shape, uint32_t fallbackMaterial,
-                   const std::string& where) {
-    return ShapeReader(attributes, shape, fallbackMaterial, where).read();
+                   const std::string& where, const std::stop_token& stop) {
+    return ShapeReader(attributes, shape, fallbackMaterial, where, stop).read();
 }
 
 }  // namespace lumi

@@ -62,21 +62,26 @@ std::vector<UVec3> triangulatePolygon(std::span<const Vec3> corners) {
     std::iota(left.begin(), left.end(), 0u);
     const Vec3 normal = newellNormal(corners);
     const std::vector<Vec2> flat = project(corners, normal);
-    // Starting with the second corner, a convex polygon becomes the fan around its first.
+    // Starting with the second corner, a convex polygon becomes the fan around its first. A cut changes the two corners
+    // beside it alone, which are tried next: the one after, then the one before, so that one round meets all ears.
     size_t candidate = 1;
+    bool triesBefore = false;
     size_t failures = glm::length(normal) > 0 ? 0 : corners.size();
     while (left.size() > 3 && failures < left.size()) {
         const size_t n = left.size();
-        const size_t i = candidate % n;
-        if (!isEar(flat, left, i)) {
+        const size_t i = (triesBefore ? candidate + n - 1 : candidate) % n;
+        if (isEar(flat, left, i)) {
+            triangles.emplace_back(left[(i + n - 1) % n], left[i], left[(i + 1) % n]);
+            left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
+            candidate = i;
+            failures = 0;
+            triesBefore = false;
+        } else if (failures++ == 0) {
+            triesBefore = true;
+        } else {
+            triesBefore = false;
             ++candidate;
-            ++failures;
-            continue;
         }
-        triangles.emplace_back(left[(i + n - 1) % n], left[i], left[(i + 1) % n]);
-        left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
-        candidate = i;
-        failures = 0;
     }
     for (size_t i = 1; i + 1 < left.size(); ++i) triangles.emplace_back(left[0], left[i], left[i + 1]);
     return triangles;

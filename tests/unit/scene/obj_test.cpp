@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "base/files.h"
 #include "scene/obj/triangulate.h"
 #include "support/expect_error.h"
@@ -47,6 +49,7 @@ TEST(Triangulate, ConvexPolygonsAreCovered) {
     const std::vector<UVec3> triangles = triangulatePolygon(corners);
     EXPECT_EQ(triangles.size(), 10u);
     EXPECT_NEAR(area(corners, triangles), 3, 1e-5f);
+    for (uint32_t i = 0; i < 10; ++i) EXPECT_EQ(triangles[i], UVec3(0, i + 1, i + 2)) << "the fan around the first";
 }
 
 TEST(Triangulate, ConcavePolygonsKeepTheirShape) {
@@ -60,6 +63,27 @@ TEST(Triangulate, ConcavePolygonsKeepTheirShape) {
         EXPECT_NEAR(area(corners, triangles), 1, 1e-6f);
         for (const UVec3& t : triangles) EXPECT_GT(area(corners, {t}), 0) << "every triangle faces as the polygon does";
     }
+}
+
+/// A spiral has two ears, one at each end, and each cut makes the corner before it the next one.
+TEST(Triangulate, SpiralsAreCutFromTheirEnds) {
+    constexpr int kHalf = 2000, kTurns = 12;
+    std::vector<Vec3> outer, inner;
+    for (int i = 0; i < kHalf; ++i) {
+        const float part = static_cast<float>(i) / kHalf, angle = 2 * kPi * kTurns * part, radius = 1 + 9 * part;
+        const Vec3 direction(std::cos(angle), std::sin(angle), 0);
+        outer.push_back(radius * direction);
+        inner.push_back((radius - 0.25f) * direction);
+    }
+    std::vector<Vec3> corners = outer;
+    corners.insert(corners.end(), inner.rbegin(), inner.rend());
+    float twice = 0;
+    for (size_t i = 0; i < corners.size(); ++i) twice += glm::cross(corners[i], corners[(i + 1) % corners.size()]).z;
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<UVec3> triangles = triangulatePolygon(corners);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
+    EXPECT_EQ(triangles.size(), corners.size() - 2);
+    EXPECT_NEAR(area(corners, triangles), twice / 2, 0.01f);
 }
 
 TEST(Triangulate, BadPolygonsStillGiveTriangles) {
