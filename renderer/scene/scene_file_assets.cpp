@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/parallel.h"
+#include "scene/gltf/choices.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/obj/load_obj.h"
 #include "scene/procedural/procedural.h"
@@ -22,6 +23,7 @@ struct AssetSource {
     std::string file;
     int sceneIndex = -1;
     std::string variant;
+    const JsonValue *sceneValue = nullptr, *variantValue = nullptr;
     Subdivision subdivision;
     std::unique_ptr<Procedural> generator;
 };
@@ -54,6 +56,8 @@ AssetSource readAsset(SceneFileContext& context, const JsonMember& member) {
         source.file = readText(context.tree, *source.kindValue, source.kind);
         if (source.kind == "obj") reader.parameters([&](ParameterVisitor& v) { source.subdivision.describe(v); });
         if (source.kind == "gltf") {
+            source.sceneValue = reader.find("scene");
+            source.variantValue = reader.find("variant");
             source.sceneIndex = reader.integer("scene", 0, 1 << 20).value_or(-1);
             source.variant = reader.text("variant").value_or("");
         }
@@ -67,6 +71,13 @@ AssetSource readAsset(SceneFileContext& context, const JsonMember& member) {
     return source;
 }
 
+/// What to point at when a file refuses the scene or the variant that it is asked for.
+const JsonValue& refusedChoice(const AssetSource& source, const std::filesystem::path& path) {
+    if (!source.variantValue) return source.sceneValue ? *source.sceneValue : *source.kindValue;
+    const bool hasScene = source.sceneIndex < static_cast<int>(gltf::readChoices(path).scenes.size());
+    return hasScene ? *source.variantValue : *source.sceneValue;
+}
+
 Scene loadAssetFile(const SceneFileContext& context, const AssetSource& source, float begin, float end) {
     LoadOptions options = context.options;
     options.sceneIndex = source.sceneIndex;
@@ -76,13 +87,17 @@ Scene loadAssetFile(const SceneFileContext& context, const AssetSource& source, 
         options.progress = [&](float fraction, const std::string& step) {
             context.options.progress(begin + fraction * (end - begin), step);
         };
+    std::filesystem::path path;
     try {
-        const std::filesystem::path path = context.resolve(source.file);
+        path = context.resolve(source.file);
         return source.kind == "gltf" ? loadGltf(path, context.log, options) : loadObj(path, context.log, options);
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::Interrupted) throw;
-        throw Error(error.kind(), {fmt::format("asset \"{}\": {}", source.member->key, error.what()),
-                                   context.tree.where(source.kindValue->at), "", ""});
+        const bool isChoice = error.kind() == ErrorKind::Usage;
+        const JsonValue& at = isChoice ? refusedChoice(source, path) : *source.kindValue;
+        throw Error(
+            isChoice ? ErrorKind::BadInput : error.kind(),
+            {fmt::format("asset \"{}\": {}", source.member->key, error.what()), context.tree.where(at.at), "", ""});
     }
 }
 

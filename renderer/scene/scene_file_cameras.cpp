@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "base/error.h"
 #include "scene/scene_file_parts.h"
 
 namespace lumi {
@@ -98,8 +99,13 @@ void readRender(SceneFileContext& context, const JsonValue* section) {
     const JsonValue* set = reader.find("set");
     reader.parameters([&](ParameterVisitor& v) { describeRender(render, v); });
     reader.finish();
-    for (const JsonMember& member : membersOf(context, set, "set"))
+    for (const JsonMember& member : membersOf(context, set, "set")) {
+        // These choose among what the one glTF file holds that a person opens.
+        if (member.key.starts_with("scene."))
+            throwBadInput({fmt::format("\"{}\" does nothing to a scene file", member.key),
+                           context.tree.where(member.at), "\"scene\" or \"variant\" of an asset", ""});
         render.set.emplace_back(member.key, settingText(context, member));
+    }
 }
 
 }  // namespace lumi

@@ -309,6 +309,27 @@ TEST(SceneFile, GltfAssetsBringAllTheyHold) {
     expectNear(cameraAt(scene, 2, 0).eye, {2, 20, 0});
 }
 
+TEST(SceneFile, AChoiceThatAnAssetDoesNotHaveIsPointedAt) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "a.gltf", std::string_view(kGltf));
+    const auto refusalOf = [&](const std::string& choice) {
+        return refusal(
+            "{\"version\": 1, \"instances\": [{\"asset\": \"a\"}],\n\"assets\": {\"a\": {\"gltf\": \"a.gltf\", " +
+                choice + "}}}",
+            folder.path());
+    };
+    const auto expectPart = [](const std::string& text, const char* part) {
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+    };
+    expectPart(refusalOf("\"variant\": \"red\""), "s.json:2:47: asset \"a\": a.gltf: no such material variant");
+    expectPart(refusalOf("\"scene\": 7"), "s.json:2:45: asset \"a\": a.gltf: no such scene in the file");
+    expectPart(refusalOf("\"scene\": 7, \"variant\": \"red\""), "s.json:2:45: asset \"a\": a.gltf: no such scene");
+    expectPart(refusalOf("\"scene\": 0, \"variant\": \"red\""), "s.json:2:59: asset \"a\": a.gltf: no such material");
+    EXPECT_EQ(refusal(R"({"version": 1, "render": {"set": {"scene.variant": "red"}}})"),
+              "s.json:1:35: \"scene.variant\" does nothing to a scene file; expected \"scene\" or \"variant\" of an "
+              "asset");
+}
+
 TEST(SceneFile, UnusedAssetsWarnAndAreNotBuilt) {
     MessageLog log;
     parseSceneFile(R"({"version": 1, "assets": {"big": {"hairball": {"strands": 200000}}}})", "s.json", {}, log);
