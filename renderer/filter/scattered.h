@@ -13,7 +13,7 @@ struct ScatteredSettings {
     enum class Filter { Gaussian, Box };
 
     Filter filter = Filter::Gaussian;
-    float sigma = 0.5f;  ///< pixels; the paper does not give it
+    float sigma = 0.7f;  ///< pixels; of the paper's sharpness, see reconstruct/stable/stable.h
     /// filter colours compressed by c / (1 + luminance), so that a bright sample does not outshine its neighbours
     bool toneMapped = true;
 

@@ -235,9 +235,9 @@ TEST(ScatteredFilter, IsTheTruncatedGaussian) {
     }
     first.push_back(static_cast<uint32_t>(places.size()));
     colours[7] = Vec3(NAN, 0, 0);
-    for (const bool toneMapped : {false, true}) {
+    for (const auto& [toneMapped, sigma] : {std::pair(false, 0.5f), std::pair(true, 0.7f)}) {
         ScatteredSettings settings;
-        settings.toneMapped = toneMapped;
+        settings.toneMapped = toneMapped, settings.sigma = sigma;
         Image out, weights;
         reconstructScattered({extent, first, places, colours, hidden}, settings, out, weights, {});
         for (int y = 0; y < extent.height; ++y)
@@ -247,7 +247,7 @@ TEST(ScatteredFilter, IsTheTruncatedGaussian) {
                     if (hidden[i] || i == 7 || std::abs(int(places[i].x) - x) > 1 || std::abs(int(places[i].y) - y) > 1)
                         continue;
                     const double dx = places[i].x - x - 0.5, dy = places[i].y - y - 0.5,
-                                 w = std::exp(-(dx * dx + dy * dy) / (2 * 0.25));
+                                 w = std::exp(-(dx * dx + dy * dy) / (2.0 * sigma * sigma));
                     const double tone = toneMapped ? 1 + luminance(colours[i]) : 1;
                     weight += w, toned += w / tone;
                     EXPECT_NEAR(
