@@ -32,12 +32,12 @@ namespace lumi {
 ///   below the target, for pixels act only where the window is empty. At 0.75 it falls by 13% while the view comes
 ///   nearer by 1% a frame, and by 18% at 3%; at 0.5 by less, but two to eight times as many samples are exchanged, each
 ///   a step in the image. Fig. 10's trade-off (study stable-fig10, quick, hairball and print): against 1 it has 0.66
-///   and 0.96 of the error (relMSE) and as much flicker, where 0.5 has 1.21 and 1.33 times the flicker for 0.53 and 1.05
-///   times the error. The paper names no default: its only value, for one figure (fig. 4), is 1. It is at most the
+///   and 0.96 of the error (relMSE) and as much flicker, where 0.5 has 1.21 and 1.33 times the flicker for 0.53 and
+///   1.05 times the error. The paper names no default: its only value, for one figure (fig. 4), is 1. It is at most the
 ///   target, or nothing would ever be added to an empty screen. At the image's border density counts the area inside.
-/// - The Gaussian of sec. 4.4 has no sigma in the paper. It is 0.7 pixels: there the CPBD of our hairball (448 x 448) is
-///   0.81, and fig. 7 prints 0.818 for theirs, the paper's only figure that depends on it; at 0.5 it is 0.86. Cut off
-///   after 3 x 3 pixels, a tenth of its height is left: "truncated" says something.
+/// - The Gaussian of sec. 4.4 has no sigma in the paper. It is 0.7 pixels: there the CPBD of our hairball (448 x 448)
+///   is 0.81, and fig. 7 prints 0.818 for theirs, the paper's only figure that depends on it; at 0.5 it is 0.86. Cut
+///   off after 3 x 3 pixels, a tenth of its height is left: "truncated" says something.
 /// - Samples have places, not cells of 8 x 8. Those of the sky are lost when an orthographic camera moves: it sees one
 ///   direction, which tells no place.
 /// - Directions of indirect light are those of the integrator (BSDF sampling), and what came to other lobes than the
