@@ -16,6 +16,13 @@ constexpr int kMostColumns = 1024, kLeastColumns = 64;
 /// How much the second moment of a light sample may grow by a coarser grid.
 constexpr double kMostGrowth = 1.2;
 
+constexpr double kPiExact = 3.14159265358979323846;
+
+/// The first whole number that is not below numerator / denominator.
+int firstNotBelow(int64_t numerator, int64_t denominator) {
+    return static_cast<int>((numerator + denominator - 1) / denominator);
+}
+
 /// Index i of the interval of an ascending table (count + 1 entries from 0 to 1) that holds u, never an empty one.
 /// guide[k] is the interval that holds k / count.
 int findInterval(const float* cdf, const uint16_t* guide, int count, float u) {
@@ -85,7 +92,6 @@ void EnvironmentLight::buildTexels(const Image& image) {
 struct EnvironmentLight::Grid {
     int columns = 0, rows = 0;
     std::vector<double> weight, square;  ///< sums over a cell of the finest grid's weights and of their squares
-    double luminance = 0;                ///< mean over the sphere
 
     double& at(std::vector<double>& values, int column, int row) const {
         return values[static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column)];
@@ -98,7 +104,7 @@ struct EnvironmentLight::Grid {
         return sum / static_cast<double>(weight.size());
     }
     Grid halved() const {
-        Grid half{columns / 2, rows / 2, {}, {}, luminance};
+        Grid half{columns / 2, rows / 2, {}, {}};
         half.weight.assign(weight.size() / 4, 0);
         half.square.assign(weight.size() / 4, 0);
         for (int row = 0; row < rows; ++row)
@@ -111,6 +117,13 @@ struct EnvironmentLight::Grid {
     }
 };
 
+/// 0 where it is no number or infinite.
+double EnvironmentLight::texelLuminance(int x, int y) const {
+    const float value =
+        luminance(texels_[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)]);
+    return value > 0 && std::isfinite(value) ? double(value) : 0.0;
+}
+
 EnvironmentLight::Grid EnvironmentLight::finestGrid() const {
     Grid grid;
     grid.columns = std::min(width_, kMostColumns);
@@ -118,22 +131,18 @@ EnvironmentLight::Grid EnvironmentLight::finestGrid() const {
     const size_t cells = static_cast<size_t>(grid.columns) * static_cast<size_t>(grid.rows);
     grid.weight.resize(cells), grid.square.resize(cells);
     const auto light = [&](int x, int y) {
-        const float value =
-            luminance(texels_[static_cast<size_t>(std::clamp(y, 0, height_ - 1)) * static_cast<size_t>(width_) +
-                              static_cast<size_t>((x + width_) % width_)]);
-        return value > 0 && std::isfinite(value) ? double(value) : 0.0;
+        return texelLuminance((x + width_) % width_, std::clamp(y, 0, height_ - 1));
     };
-    std::vector<double> rowLight(static_cast<size_t>(grid.rows)), rowSine(static_cast<size_t>(grid.rows));
     parallelRanges(grid.rows, 16, [&](int64_t begin, int64_t end) {
         for (int row = static_cast<int>(begin); row < end; ++row) {
             const int y0 = static_cast<int>(int64_t(row) * height_ / grid.rows);
-            const int y1 = std::max(y0 + 1, static_cast<int>(int64_t(row + 1) * height_ / grid.rows));
-            const double sine = std::sin(3.14159265358979323846 * (row + 0.5) / grid.rows);
-            rowSine[static_cast<size_t>(row)] = sine * grid.columns;
+            const int y1 = firstNotBelow(int64_t(row + 1) * height_, grid.rows);
+            const double sine = std::sin(kPiExact * (row + 0.5) / grid.rows);
             for (int column = 0; column < grid.columns; ++column) {
                 const int x0 = static_cast<int>(int64_t(column) * width_ / grid.columns);
-                const int x1 = std::max(x0 + 1, static_cast<int>(int64_t(column + 1) * width_ / grid.columns));
-                // The cell's own texels, and with a small weight their neighbours, which interpolation mixes in.
+                const int x1 = firstNotBelow(int64_t(column + 1) * width_, grid.columns);
+                // The cell's own texels, those on its edges among them, and with a small weight their neighbours, which
+                // interpolation mixes in.
                 double own = 0, around = 0;
                 for (int y = y0 - 1; y <= y1; ++y)
                     for (int x = x0 - 1; x <= x1; ++x)
@@ -142,14 +151,25 @@ EnvironmentLight::Grid EnvironmentLight::finestGrid() const {
                 const double weight = sine * (0.75 * own / count + 0.25 * around / border);
                 grid.at(grid.weight, column, row) = weight;
                 grid.at(grid.square, column, row) = weight * weight;
-                rowLight[static_cast<size_t>(row)] += sine * own / count;
             }
         }
     });
-    double sines = 0;
-    for (size_t row = 0; row < rowLight.size(); ++row) grid.luminance += rowLight[row], sines += rowSine[row];
-    grid.luminance /= sines;
     return grid;
+}
+
+double EnvironmentLight::texelMeanLuminance() const {
+    std::vector<double> rowLight(static_cast<size_t>(height_)), rowSine(rowLight.size());
+    parallelRanges(height_, 16, [&](int64_t begin, int64_t end) {
+        for (int y = static_cast<int>(begin); y < end; ++y) {
+            const auto row = static_cast<size_t>(y);
+            for (int x = 0; x < width_; ++x) rowLight[row] += texelLuminance(x, y);
+            rowSine[row] = std::sin(kPiExact * (y + 0.5) / height_);
+            rowLight[row] *= rowSine[row];
+        }
+    });
+    double light = 0, sines = 0;
+    for (size_t row = 0; row < rowLight.size(); ++row) light += rowLight[row], sines += rowSine[row];
+    return light / (sines * width_);
 }
 
 /// `cell` is the solid angle of a cell of the finest grid over the sine of its angle from +Y; weights hold that sine.
@@ -179,7 +199,7 @@ float EnvironmentLight::irradiance(const Vec3& normal) const {
 
 void EnvironmentLight::buildTables() {
     Grid grid = finestGrid();
-    imageMeanLuminance_ = static_cast<float>(grid.luminance);
+    imageMeanLuminance_ = static_cast<float>(texelMeanLuminance());
     // Coarsen while the samples stay nearly as good.
     const double finest = grid.secondMoment();
     const double cell = 2 * double(kPi) * double(kPi) / static_cast<double>(grid.weight.size());

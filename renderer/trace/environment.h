@@ -53,6 +53,8 @@ private:
     void buildTexels(const Image& image);
     struct Grid;
     Grid finestGrid() const;
+    double texelLuminance(int x, int y) const;
+    double texelMeanLuminance() const;  ///< over the sphere, scale left out
     void buildTables();
     void buildAmbientCube(const Grid& grid, double cell);
     Vec3 imageRadiance(Vec2 uv) const;
