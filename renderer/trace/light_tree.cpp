@@ -20,6 +20,9 @@ constexpr size_t kAlone = 4096;
 /// lie within this cone.
 constexpr uint32_t kMostInGroup = 4096;
 constexpr float kFarRadii = 4, kGroupSpread = 0.8f;
+/// A light of a group is drawn by the difference of two sums, which far brighter lights before it may leave without
+/// digits: it may be off by this part.
+constexpr double kMostRounding = 0.1;
 
 /// A range of the order of lights, with its bounds.
 struct Range {
@@ -296,6 +299,7 @@ void LightTree::findGroups() {
     groups_.assign(nodes_.size() * kWidth, {});
     // Children stand after their parents: backwards, every node knows its own range.
     std::vector<LightTreeGroup> ranges(nodes_.size(), {.begin = count});
+    std::vector<bool> exact(nodes_.size(), true);  // every light below a node is told by the sums
     for (auto n = static_cast<uint32_t>(nodes_.size()); n-- > 0;)
         for (uint32_t c = 0; c < kWidth; ++c) {
             LightTreeNode& node = nodes_[n];
@@ -303,11 +307,15 @@ void LightTree::findGroups() {
             LightTreeGroup group;
             if (child & LightTreeNode::kLight) {
                 if (!(node.intensity[c] > 0)) continue;
-                group.begin = rankOf[child & ~LightTreeNode::kLight], group.end = group.begin + 1;
+                const uint32_t light = child & ~LightTreeNode::kLight;
+                group.begin = rankOf[light], group.end = group.begin + 1;
+                const double intensity = node.intensity[c];
+                if (std::abs(ways_[light].intensity - intensity) > kMostRounding * intensity) exact[n] = false;
             } else {
                 group = ranges[child];
                 const bool alike = node.cosSpread[c] >= kGroupSpread && node.cosReach[c] <= 0;
-                if (alike && group.end > group.begin && group.end - group.begin <= kMostInGroup)
+                if (!exact[child]) exact[n] = false;
+                else if (alike && group.end > group.begin && group.end - group.begin <= kMostInGroup)
                     node.far2[c] = kFarRadii * kFarRadii * node.radius[c] * node.radius[c];
             }
             group.before = ranks_[group.begin].before;

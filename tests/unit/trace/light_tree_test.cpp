@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 
 #include "base/isa.h"
 #include "math/hash.h"
@@ -135,31 +136,34 @@ std::vector<LightBounds> panel(uint32_t side) {
     return lights;
 }
 
+/// All lights of the panel, and none besides, reach a point below that looks up, as often as is told.
+void expectDrawnAsTold(const LightTree& tree, std::span<const LightBounds> panel, const Vec3& below) {
+    const LightTreePoint point = pointAt(below, Vec3(0, 1, 0), 1);
+    const int count = 300000;
+    std::vector<double> observed(panel.size(), 0), expected(panel.size());
+    for (uint32_t k = 0; k < count; ++k) {
+        const LightTreeChoice choice = tree.pick(point, 0, {number(71, k), number(72, k)});
+        ASSERT_LT(choice.light, panel.size());
+        ++observed[choice.light];
+        const float told = tree.probability(point, 0, choice.light);
+        ASSERT_NEAR(choice.probability, told, 1e-4f * told);
+    }
+    double sum = 0;
+    for (uint32_t i = 0; i < panel.size(); ++i) {
+        const float probability = tree.probability(point, 0, i);
+        sum += probability;
+        expected[i] = count * double(probability);
+        EXPECT_EQ(probability > 0, panel[i].intensity > 0);
+    }
+    EXPECT_NEAR(sum, 1, 1e-4);
+    EXPECT_GT(chiSquareTest(observed, expected), 1e-3) << below.y;
+}
+
 TEST(LightTree, FarGroupsAreDrawnByIntensityAndAsTheySay) {
     const std::vector<LightBounds> lights = panel(24);
     LightTree tree;
     tree.build(lights);
-    for (const Vec3& p : {Vec3(1, 2.8f, 1), Vec3(0.5f, 1, 2), Vec3(-8, -20, 3)}) {
-        const LightTreePoint point = pointAt(p, Vec3(0, 1, 0), 1);
-        const int count = 300000;
-        std::vector<double> observed(lights.size(), 0), expected(lights.size());
-        for (uint32_t k = 0; k < count; ++k) {
-            const LightTreeChoice choice = tree.pick(point, 0, {number(71, k), number(72, k)});
-            ASSERT_LT(choice.light, lights.size());
-            ++observed[choice.light];
-            const float told = tree.probability(point, 0, choice.light);
-            ASSERT_NEAR(choice.probability, told, 1e-4f * told);
-        }
-        double sum = 0;
-        for (uint32_t i = 0; i < lights.size(); ++i) {
-            const float probability = tree.probability(point, 0, i);
-            sum += probability;
-            expected[i] = count * double(probability);
-            EXPECT_EQ(probability > 0, lights[i].intensity > 0);
-        }
-        EXPECT_NEAR(sum, 1, 1e-4);
-        EXPECT_GT(chiSquareTest(observed, expected), 1e-3) << p.y;
-    }
+    for (const Vec3& p : {Vec3(1, 2.8f, 1), Vec3(0.5f, 1, 2), Vec3(-8, -20, 3)}) expectDrawnAsTold(tree, lights, p);
     // From far below, all are as one.
     const LightTreePoint far = pointAt(Vec3(1, -500, 1), Vec3(0, 1, 0), 1);
     double total = 0;
@@ -167,6 +171,21 @@ TEST(LightTree, FarGroupsAreDrawnByIntensityAndAsTheySay) {
     for (uint32_t i = 0; i < lights.size(); i += 5)
         EXPECT_NEAR(tree.probability(far, 0, i), lights[i].intensity / total,
                     1e-3 * lights[i].intensity / total + 1e-9);
+}
+
+// Beside a sun, here below the horizon, double precision has no digits for a sum of faint lights that goes on from it.
+TEST(LightTree, ASunLeavesFaintLightsTheirShare) {
+    std::vector<LightBounds> lights = panel(24);
+    for (LightBounds& light : lights) light.intensity *= 1e-5f;
+    const std::vector<LightBounds> faint = lights;
+    for (const float side : {-1.0f, 1.0f}) {
+        const Vec3 at = Vec3(side, -0.3f, 0) * 1e6f;
+        lights.resize(faint.size());
+        lights.push_back({{at - Vec3(1e4f), at + Vec3(1e4f)}, {0, 0, 1}, -1, 0, false, 3e12f});
+        LightTree tree;
+        tree.build(lights);
+        for (const Vec3& p : {Vec3(0.5f, 1, 2), Vec3(-8, -20, 3)}) expectDrawnAsTold(tree, faint, p);
+    }
 }
 
 TEST(LightTree, ComesCloserToIrradianceThanIntensityAlone) {
