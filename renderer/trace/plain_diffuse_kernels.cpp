@@ -17,8 +17,8 @@ void prepare(PlainLanes& lanes, const AlbedoView&, const PlainSettings&) {
         const bool mayDiffuse = (lanes.lobes[i] & PlainLanes::kDiffuseLobe) != 0;
         const Lane3 colour = at(lanes.baseColor, i);
         const Lane3 base = {saturated(colour.x), saturated(colour.y), saturated(colour.z)};
-        const Lane3 diffuse = base * (opaque * (mayDiffuse ? 1.0f : 0.0f));
-        put(lanes.diffuseAlbedo, i, diffuse), put(lanes.specularAlbedo, i, {0, 0, 0});
+        const Lane3 albedo = base * opaque, diffuse = albedo * (mayDiffuse ? 1.0f : 0.0f);
+        put(lanes.diffuseAlbedo, i, albedo), put(lanes.specularAlbedo, i, {0, 0, 0});
         put(lanes.diffuseScale, i, diffuse * kLaneInvPi);
         lanes.diffuseProbability[i] = brightness(diffuse) > 0 ? 1.0f : 0.0f;
     }

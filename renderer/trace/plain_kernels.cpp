@@ -216,23 +216,25 @@ void prepare(Lanes& lanes, const AlbedoView& view, const PlainSettings& settings
         const bool maySpecular = (lanes.lobes[i] & Lanes::kSpecularLobe) != 0;
         const bool mayDiffuse = (lanes.lobes[i] & Lanes::kDiffuseLobe) != 0;
         const float specularKept = maySpecular ? 1.0f : 0.0f;
-        const Lane3 multipleAlbedo = multiple * (lost * specularKept);
-        const Lane3 reflected = {(f0.x * towards.first + f90 * towards.second) * specularKept,
-                                 (f0.y * towards.first + f90 * towards.second) * specularKept,
-                                 (f0.z * towards.first + f90 * towards.second) * specularKept};
+        // The surface's albedo is the same whatever lobes the path may still take.
+        const Lane3 onceAlbedo = {f0.x * towards.first + f90 * towards.second,
+                                  f0.y * towards.first + f90 * towards.second,
+                                  f0.z * towards.first + f90 * towards.second};
+        put(lanes.specularAlbedo, i, onceAlbedo + multiple * lost);
+        const Lane3 reflected = onceAlbedo * specularKept, multipleAlbedo = multiple * (lost * specularKept);
         put(lanes.f0, i, f0);
         lanes.f90[i] = f90;
         put(lanes.multipleScale, i, multipleAlbedo * (kLaneInvPi / most(1 - eavg, kLeastLoss)));
         put(lanes.reflectedAlbedo, i, reflected);
-        put(lanes.specularAlbedo, i, reflected + multipleAlbedo);
 
         // The diffuse base under it.
         const float below0 = layerF0 - layerMany, below90 = specular - layerMany;
         const float through = most(0.0f, 1 - (towards.first * below0 + towards.second * below90 + layerMany));
         const float meanThrough = 1 - (mean.first * below0 + mean.second * below90 + layerMany);
-        const Lane3 diffuse = base * (opaque * through * (mayDiffuse ? 1.0f : 0.0f));
+        const Lane3 diffuseAlbedo = base * (opaque * through);
+        const Lane3 diffuse = diffuseAlbedo * (mayDiffuse ? 1.0f : 0.0f);
         lanes.layerF0[i] = below0, lanes.layerF90[i] = below90, lanes.layerMultiple[i] = layerMany;
-        put(lanes.diffuseAlbedo, i, diffuse);
+        put(lanes.diffuseAlbedo, i, diffuseAlbedo);
         put(lanes.diffuseScale, i, diffuse * (kLaneInvPi / most(meanThrough, 1e-4f)));
 
         // Chances of the lobes.

@@ -300,6 +300,34 @@ TEST(PathSettings, DescribesEveryMember) {
     for (const ParameterInfo& info : list) EXPECT_EQ(info.redo, Redo::Samples) << info.id;
 }
 
+// Plain surfaces are shaded many at a time, varnished ones one by one, and diffuse ones alone by kernels of their own.
+TEST(Tracer, AlbedoIsTheSurfacesWhateverItsPathsMayDo) {
+    Material varnished = metal(0.6f, 0.3f);
+    varnished.metallic = 0.3f;
+    const Material plain = varnished;
+    varnished.clearcoat = 1e-5f;
+    for (const Material& material : {plain, varnished, lambert(0.6f)}) {
+        TinyScene tiny;
+        tiny.scene.environment.constant = Vec3(1);
+        tiny.add(floorMesh(), material);
+        Tracer tracer;
+        tracer.bind(tiny.pose());
+        const auto albedos = [&](int mostDiffuse, int mostSpecular) {
+            PathSettings path = plainPaths(4);
+            path.maxDiffuseDepth = mostDiffuse, path.maxSpecularDepth = mostSpecular;
+            Signals signals;
+            EXPECT_TRUE(tracer.sample(
+                frameOf(lookFrom(Vec3(0, 2, 2), Vec3(0)), {8, 8}, 1, path, {Signal::Albedo, Signal::SpecularAlbedo}),
+                signals));
+            return std::pair(signals[Signal::Albedo].at(0, 4, 4), signals[Signal::SpecularAlbedo].at(0, 4, 4));
+        };
+        const auto whole = albedos(64, 64);
+        EXPECT_GT(whole.first, 0.3f);
+        for (const auto& [diffuse, specular] : {std::pair(0, 64), std::pair(64, 0), std::pair(0, 0)})
+            EXPECT_EQ(albedos(diffuse, specular), whole) << diffuse << ' ' << specular << ' ' << material.clearcoat;
+    }
+}
+
 TEST(Tracer, UnlitSurfacesShowTheirColourTimesThatOfTheirVertices) {
     Mesh sheet = rectangleMesh(2, 2, Facing::Z);
     for (const Vec3& p : sheet.positions) sheet.colours.emplace_back(p.x > 0 ? 1.0f : 0.0f, 0.5f, 2.0f, 1.0f);
