@@ -57,7 +57,7 @@ BaseBsdf::BaseBsdf(const BsdfInputs& inputs, const Vec3& wo) : wo_(usableDirecti
     const float metallic = saturate(inputs.metallic), transmitting = saturate(inputs.transmission);
     const float opaque = (1 - metallic) * (1 - transmitting), boundary = (1 - metallic) * transmitting;
     const float specular = saturate(inputs.specular);
-    const float ior = inputs.ior >= 0 ? std::min(inputs.ior, 100.0f) : 1.5f;
+    const float ior = inputs.ior >= 0 ? std::min(inputs.ior, 1e6f) : 1.5f;
     const Vec3 baseColor = saturate(inputs.baseColor), specularColor = nonNegative(inputs.specularColor, 1e4f);
 
     setFacets(inputs, saturate(inputs.roughness));

@@ -37,7 +37,7 @@ BsdfInputs materialOf(int i, Numbers& u) {
     in.baseColor = u.next3();
     in.metallic = i % 3 == 0 ? 0.0f : i % 3 == 1 ? 1.0f : u.next();
     in.roughness = i % 7 == 0 ? 0.0f : u.next();
-    in.ior = 1 + u.next();
+    in.ior = i % 11 == 0 ? 1e4f : 1 + u.next();  // what reflects everything is far off the others
     in.specular = i % 5 == 0 ? 0.0f : u.next();
     in.specularColor = u.next3();
     in.multipleScattering = true;
