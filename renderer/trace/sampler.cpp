@@ -60,10 +60,14 @@ float halton(uint32_t index, uint32_t scramble, uint32_t dimension) {
     return static_cast<float>(sum) * 0x1p-24f;
 }
 
-/// `base` moved on around the circle by what the tile holds at the pixel.
+/// `base` moved on around the circle by what the tile holds at the pixel. Every dimension reads the tile at a place of
+/// its own, far from those of its neighbours: the R2 sequence [Roberts 2018], moved as a whole by the seed.
 float rotated(float base, uint32_t x, uint32_t y, uint32_t scramble, uint32_t dimension) {
-    const uint32_t shift = hashCombine(scramble, dimension);
-    const float sum = base + BlueNoiseTile::instance().at(x + shift, y + (shift >> 16));
+    static_assert(BlueNoiseTile::kSide == 1 << 6);
+    constexpr uint32_t kStepX = 0xc13fa9a9u, kStepY = 0x91e10da6u;  // the sequence's steps, of a side of 2^32
+    const uint32_t placeX = scramble + (dimension * kStepX >> 26),
+                   placeY = (scramble >> 16) + (dimension * kStepY >> 26);
+    const float sum = base + BlueNoiseTile::instance().at(x + placeX, y + placeY);
     return sum < 1 ? sum : sum - 1;
 }
 

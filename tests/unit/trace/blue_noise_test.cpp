@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/transport_scene.h"
+#include "trace/sampler.h"
 
 namespace lumi {
 namespace {
@@ -47,6 +48,22 @@ TEST(BlueNoise, TileHasHardlyAnyLowFrequencies) {
             ++waves;
         }
     EXPECT_LT(low / waves, 0.03 * variance);
+}
+
+/// Two dimensions with one place in the tile would rise and fall together from pixel to pixel.
+TEST(BlueNoise, EveryDimensionHasAPlaceOfItsOwn) {
+    for (uint32_t seed = 0; seed < 300; ++seed) {
+        const auto rise = [&](uint32_t dimension, uint32_t x, uint32_t y) {
+            const auto at = [&](uint32_t px, uint32_t py) {
+                return SampleStream(SamplerKind::BlueNoise, 0, seed, {px, py, 0}).get1(dimension);
+            };
+            const float difference = at(x, y) - at(0, 0);
+            return std::lround((difference < 0 ? difference + 1 : difference) * kSide * kSide) % (kSide * kSide);
+        };
+        std::set<std::pair<long, long>> places;
+        for (uint32_t d = 0; d < dimension::vertex(4, 0); ++d) places.emplace(rise(d, 1, 0), rise(d, 0, 1));
+        ASSERT_EQ(places.size(), dimension::vertex(4, 0)) << "seed " << seed;
+    }
 }
 
 struct ErrorPower {
