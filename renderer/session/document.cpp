@@ -87,11 +87,13 @@ int setOrder(const std::string& id) {
 std::vector<std::string> slugs(const std::vector<std::string>& names, const std::string& kind) {
     std::vector<std::string> result;
     std::set<std::string> taken;
+    std::map<std::string, int> nextCopy;  // smaller numbers of that name are taken
     for (size_t i = 0; i < names.size(); ++i) {
         std::string base = slug(names[i]);
         if (base.empty()) base = fmt::format("{}-{}", kind, i + 1);
         std::string unique = base;
-        for (int copy = 2; !taken.insert(unique).second; ++copy) unique = fmt::format("{}-{}", base, copy);
+        for (int& copy = nextCopy.try_emplace(base, 2).first->second; !taken.insert(unique).second; ++copy)
+            unique = fmt::format("{}-{}", base, copy);
         result.push_back(unique);
     }
     return result;

@@ -1,6 +1,8 @@
 #include "session/document.h"
 
+#include <chrono>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "image/exr.h"
 #include "support/expect_error.h"
@@ -13,6 +15,16 @@ namespace {
 TEST(Slugs, AreLowerCaseAndUnique) {
     const std::vector<std::string> expected{"floor-paint", "floor-paint-2", "material-3", "a-b", "9", "floor-paint-3"};
     EXPECT_EQ(slugs({"Floor Paint", "floor.paint", "", " A__b! ", "9", "FLOOR/PAINT"}, "material"), expected);
+}
+
+TEST(Slugs, OfManyEqualNamesAreNotSlow) {
+    std::vector<std::string> names(100000, "a");
+    names[1] = "A 3";
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<std::string> unique = slugs(names, "material");
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+    EXPECT_EQ(std::vector(unique.begin(), unique.begin() + 4), (std::vector<std::string>{"a", "a-3", "a-2", "a-4"}));
+    EXPECT_EQ(std::set<std::string>(unique.begin(), unique.end()).size(), names.size());
 }
 
 TEST(Document, TakesTheScenesOwnSettings) {
