@@ -296,11 +296,22 @@ json Document::difference(const Document& from, const Document& to) {
 
     const bool otherSky = from.environmentDigest_ != to.environmentDigest_ ||
                           from.edited_->environment.file != to.edited_->environment.file;
-    std::map<std::string, ParameterValue> before;
     const bool sameScene = from.edited_ == to.edited_;
+    const auto isTold = [&](const DocumentFields::Group& group) {
+        return !(sameScene && group.ofScene) && group.prefix != "camera." && group.prefix != "time";
+    };
+    std::map<std::string, ParameterValue> before;
+    std::set<std::string> known;
+    for (const DocumentFields::Group& group : DocumentFields::groups(from, "")) {
+        if (!isTold(group)) continue;
+        known.insert(group.prefix);
+        for (const ParameterInfo& info : listParameters(group.describe)) before[info.id] = info.value;
+    }
     for (const DocumentFields::Group& group : DocumentFields::groups(to, "")) {
-        if ((sameScene && group.ofScene) || group.prefix == "camera." || group.prefix == "time") continue;
-        for (const ParameterInfo& info : from.list(group.prefix)) before[info.id] = info.value;
+        if (!isTold(group)) continue;
+        // A module that only `to` shows: `from` knows its values if it is asked for them.
+        if (!known.contains(group.prefix))
+            for (const ParameterInfo& info : from.list(group.prefix)) before[info.id] = info.value;
         for (const ParameterInfo& info : listParameters(group.describe)) {
             const auto old = before.find(info.id);
             // A sky that is read, or put back, brings its own scale and rotation.

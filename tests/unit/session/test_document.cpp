@@ -27,6 +27,16 @@ TEST(Slugs, OfManyEqualNamesAreNotSlow) {
     EXPECT_EQ(std::set<std::string>(unique.begin(), unique.end()).size(), names.size());
 }
 
+TEST(Document, ChangesAmongManyLightsAreFoundFast) {
+    Scene scene = makeTinyScene();
+    scene.lights.resize(20000, scene.lights[0]);
+    Document document(std::make_shared<Scene>(scene));
+    document.setText("light.lamp-20000.intensity", "3,2,1");
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_EQ(document.changedValues().dump(), R"({"light.lamp-20000.intensity":[3.0,2.0,1.0]})");
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+}
+
 TEST(Document, TakesTheScenesOwnSettings) {
     Scene scene = makeTinyScene();
     scene.render.exposureEv = 2;
