@@ -1,11 +1,13 @@
 #include "scene/pose_bounds.h"
 
+#include <map>
 #include <set>
 #include <vector>
 
 #include "base/error.h"
 #include "scene/deform.h"
 #include "scene/reach.h"
+#include "scene/shared_shapes.h"
 
 namespace lumi {
 namespace {
@@ -49,6 +51,7 @@ std::set<float> momentsOf(const Scene& scene) {
 void eachBounds(const Scene& scene, const NodePose& pose, MeshBounds& meshBounds,
                 const std::function<void(const Bounds3&)>& visit) {
     PosedSkins skins(scene, pose);
+    std::map<ShapeKey, Bounds3> shapes;
     for (const Instance& instance : scene.instances) {
         const Mesh& mesh = *instance.mesh;
         const bool skinned = isSkinned(instance);
@@ -61,7 +64,9 @@ void eachBounds(const Scene& scene, const NodePose& pose, MeshBounds& meshBounds
         std::vector<float> weights;
         if (instance.node >= 0) weights = pose.morphWeights[static_cast<size_t>(instance.node)];
         const std::vector<Mat4>& joints = skins.of(skinned ? instance.skin : -1);
-        visit(transformedBounds(boundsOf(deform(mesh, weights, joints).positions), worldFromObject));
+        const auto [shape, isNew] = shapes.try_emplace(shapeKey(instance, weights, joints));
+        if (isNew) shape->second = boundsOf(deform(mesh, weights, joints).positions);
+        visit(transformedBounds(shape->second, worldFromObject));
     }
 }
 

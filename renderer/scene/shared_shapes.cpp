@@ -7,12 +7,16 @@
 
 namespace lumi {
 
+ShapeKey shapeKey(const Instance& instance, std::span<const float> weights, std::span<const Mat4> joints) {
+    weights = weights.first(std::min(weights.size(), instance.mesh->morphTargets.size()));
+    return {instance.mesh.get(), joints.empty() ? -1 : instance.skin,
+            std::string(reinterpret_cast<const char*>(weights.data()), weights.size_bytes())};
+}
+
 std::shared_ptr<const DeformedVertices> SharedShapes::of(const Instance& instance, std::span<const float> weights,
                                                          std::span<const Mat4> joints) {
     const Mesh& mesh = *instance.mesh;
-    weights = weights.first(std::min(weights.size(), mesh.morphTargets.size()));
-    const std::string weightBytes(reinterpret_cast<const char*>(weights.data()), weights.size_bytes());
-    const Key key{&mesh, joints.empty() ? -1 : instance.skin, weightBytes};
+    const ShapeKey key = shapeKey(instance, weights, joints);
     {
         const std::lock_guard lock(mutex_);
         if (const auto known = shapes_.find(key); known != shapes_.end()) return known->second;

@@ -10,6 +10,10 @@
 
 namespace lumi {
 
+/// Equal for instances whose mesh deforms alike at one moment: mesh, skin, and the bytes of the weights that count.
+using ShapeKey = std::tuple<const Mesh*, int, std::string>;
+ShapeKey shapeKey(const Instance& instance, std::span<const float> weights, std::span<const Mat4> joints);
+
 /// Deformed meshes of one moment. Instances of one mesh that its weights and joints bend alike share their vertices,
 /// however many there are. For several threads.
 class SharedShapes {
@@ -20,9 +24,8 @@ public:
                                                std::span<const Mat4> joints);
 
 private:
-    using Key = std::tuple<const Mesh*, int, std::string>;  // mesh, skin, bytes of the weights that count
     std::mutex mutex_;
-    std::map<Key, std::shared_ptr<const DeformedVertices>> shapes_;
+    std::map<ShapeKey, std::shared_ptr<const DeformedVertices>> shapes_;
 };
 
 }  // namespace lumi
