@@ -48,20 +48,26 @@ void applyMachine(const MachineOptions& machine) {
     if (!machine.memoryLimit.empty()) setMemoryLimit(parseBytes(machine.memoryLimit, "--memory-limit"));
 }
 
-int parseSceneIndex(const TypedValue& value) {
-    const int64_t index = parseWhole(value.text, value.option, "scene.index as a whole number", -1);
-    if (index > 9999) throwUsage({"\"scene.index\" is out of range", value.option, "-1 to 9999", value.text});
-    return static_cast<int>(index);
+bool readChoice(const TypedValue& value, SceneChoice& choice) {
+    if (value.id == "scene.variant") {
+        choice.variant = value.text;
+    } else if (value.id == "scene.animation") {
+        choice.animation = value.text;
+    } else if (value.id == "scene.index") {
+        const int64_t index = parseWhole(value.text, value.option, "scene.index as a whole number", -1);
+        if (index > 9999) throwUsage({"\"scene.index\" is out of range", value.option, "-1 to 9999", value.text});
+        choice.index = static_cast<int>(index);
+    } else {
+        return false;
+    }
+    return true;
 }
 
 std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const SceneOptions& options, MessageLog& log,
                                        std::stop_token stop) {
     LoadOptions load;
     load.stop = stop;
-    for (const TypedValue& value : options.values) {
-        if (value.id == "scene.variant") load.variant = value.text;
-        if (value.id == "scene.index") load.sceneIndex = parseSceneIndex(value);
-    }
+    for (const TypedValue& value : options.values) readChoice(value, load.choice);
     return loadScene(file, log, load);
 }
 

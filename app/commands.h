@@ -30,10 +30,10 @@ void applyMachine(const MachineOptions& machine);
 /// this is for those that loaded.
 void printMessages(MessageLog& log, const MachineOptions& machine);
 
-/// The whole number of a `scene.index`. Throws Error(Usage).
-int parseSceneIndex(const TypedValue& value);
+/// Takes a `scene.` value into `choice`; false: it is no such value. Throws Error(Usage).
+bool readChoice(const TypedValue& value, SceneChoice& choice);
 
-/// The scene that the options name, with the scene.index and scene.variant among their values.
+/// The scene that the options name, with the `scene.` values among theirs.
 std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const SceneOptions& options, MessageLog& log,
                                        std::stop_token stop);
 

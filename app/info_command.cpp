@@ -62,17 +62,22 @@ SceneMemory memoryOf(const Scene& scene, const Tracer& tracer) {
 
 json vectorJson(const Vec3& v) { return json::array({v.x, v.y, v.z}); }
 
-/// What of a glTF can be chosen, and what is: "scenes" and "variants", empty for other files.
+/// What of a glTF can be chosen, and what is: "scenes", "variants" and "animations", empty for other files.
 void addChoices(const std::filesystem::path& file, const Document& document, json& info) {
     const std::string extension = lowerExtension(file);
-    info["scenes"] = info["variants"] = json::array();
+    info["scenes"] = info["variants"] = info["animations"] = json::array();
     if (extension != ".gltf" && extension != ".glb") return;
     const gltf::Choices choices = gltf::readChoices(file);
-    const int shown = document.sceneIndex() >= 0 ? document.sceneIndex() : choices.defaultScene;
+    const SceneChoice& choice = document.sceneChoice();
+    const int shown = choice.index >= 0 ? choice.index : choices.defaultScene;
     for (size_t i = 0; i < choices.scenes.size(); ++i)
         info["scenes"].push_back({{"index", i}, {"title", choices.scenes[i]}, {"shown", static_cast<int>(i) == shown}});
     for (const std::string& variant : choices.variants)
-        info["variants"].push_back({{"title", variant}, {"shown", variant == document.sceneVariant()}});
+        info["variants"].push_back({{"title", variant}, {"shown", variant == choice.variant}});
+    std::set<std::string> played;
+    for (const Animation& animation : document.loadedScene()->animations) played.insert(animation.name);
+    for (const std::string& name : choices.animations)
+        info["animations"].push_back({{"title", name}, {"shown", played.contains(name)}});
 }
 
 json infoJson(const Scene& scene, const std::filesystem::path& file, const SceneMemory& memory, const MessageLog& log) {
@@ -158,6 +163,9 @@ void printInfo(const json& info, const Scene& scene, const SceneMemory& memory) 
     if (!info["variants"].empty())
         line("variants", fmt::format("{}: {}; --set scene.variant=NAME shows one", info["variants"].size(),
                                      choicesText(info["variants"])));
+    if (info["animations"].size() > 1)
+        line("animations", fmt::format("{}: {}; --set scene.animation=NAME plays one alone", info["animations"].size(),
+                                       choicesText(info["animations"])));
     line("materials", fmt::format("{}: {}", info["materials"].size(), someOf(info["materials"])));
     std::string lights =
         fmt::format("{}{}{}", scene.lights.size(), scene.lights.empty() ? "" : ": ", someOf(info["lights"]));

@@ -19,11 +19,8 @@ StartOptions startOptions(const SceneOptions& options) {
     StartOptions start;
     start.scene = findScene(options.scene.empty() ? "atrium" : options.scene);
     for (const std::string& module : options.modules) findModule(module, "--module");
-    for (const TypedValue& value : options.values) {
-        if (value.id == "scene.variant") start.variant = value.text;
-        else if (value.id == "scene.index") start.sceneIndex = parseSceneIndex(value);
-        else start.set.push_back(value);
-    }
+    for (const TypedValue& value : options.values)
+        if (!readChoice(value, start.choice)) start.set.push_back(value);
     start.modules = options.modules;
     return start;
 }

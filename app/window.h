@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "math/vector.h"
+#include "scene/scene_choice.h"
 
 namespace lumi {
 
@@ -16,8 +17,7 @@ struct TypedValue {
 /// What the window and its offscreen twin show when they open.
 struct StartOptions {
     std::filesystem::path scene;       ///< a file that exists, as findScene() gives it; empty: an empty window
-    int sceneIndex = -1;               ///< glTF: which scene; -1 is the file's default
-    std::string variant;               ///< material variant by name; empty is the default
+    SceneChoice choice;                ///< glTF
     std::vector<std::string> modules;  ///< instance of each pane; two open the panes side by side
     /// Parameters in the order given: `--set`, and the options that are parameters (`render.width`, ...).
     std::vector<TypedValue> set;

@@ -15,7 +15,7 @@ void openAtStart(Session& session, AppState& state, const StartOptions& start) {
         set.emplace_back(state.viewId(static_cast<int>(pane), "module"), start.modules[pane]);
     if (start.modules.size() > 1) set.emplace_back("view.layout", "side-by-side");
     for (const TypedValue& value : start.set) set.emplace_back(value.id, value.text);
-    session.open(start.scene, start.sceneIndex, start.variant, std::move(set));
+    session.open(start.scene, start.choice, std::move(set));
 }
 
 void StartCheck::check() {

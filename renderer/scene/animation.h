@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "math/transform.h"
@@ -29,6 +30,7 @@ struct Animation {
     std::vector<AnimationChannel> channels;
     float duration = 0;
     bool loop = true;
+    std::string name = {};  ///< the file's, or its number there; empty for what no file names
 };
 
 }  // namespace lumi

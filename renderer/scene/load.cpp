@@ -48,13 +48,15 @@ Scene loadUnderSky(const fs::path& path, MessageLog& log, const LoadOptions& opt
     return scene;
 }
 
-/// Only glTF files have several scenes and variants of materials.
+/// Only glTF files have several scenes, variants of materials and animations.
 void refuseChoices(const fs::path& path, const LoadOptions& options) {
-    const bool variant = !options.variant.empty();
-    if (!variant && options.sceneIndex < 0) return;
-    throwUsage({variant ? "has no material variants to choose from" : "holds one scene alone", path.filename().string(),
-                variant ? "scene.variant for a .gltf or .glb" : "scene.index for a .gltf or .glb",
-                variant ? options.variant : std::to_string(options.sceneIndex)});
+    const auto refuse = [&](const char* what, const std::string& id, const std::string& wanted) {
+        throwUsage({what, path.filename().string(), id + " for a .gltf or .glb", wanted});
+    };
+    const SceneChoice& choice = options.choice;
+    if (choice.index >= 0) refuse("holds one scene alone", "scene.index", std::to_string(choice.index));
+    if (!choice.variant.empty()) refuse("has no material variants to choose from", "scene.variant", choice.variant);
+    if (!choice.animation.empty()) refuse("has no animations to choose from", "scene.animation", choice.animation);
 }
 
 }  // namespace

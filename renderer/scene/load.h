@@ -9,6 +9,7 @@
 
 #include "base/messages.h"
 #include "scene/scene.h"
+#include "scene/scene_choice.h"
 
 namespace lumi {
 
@@ -26,8 +27,7 @@ struct Subdivision {
 };
 
 struct LoadOptions {
-    int sceneIndex = -1;      ///< glTF: which scene; -1 is the file's default
-    std::string variant;      ///< KHR_materials_variants, by name; empty is the default
+    SceneChoice choice;       ///< glTF
     Subdivision subdivision;  ///< OBJ
     LoadProgress progress;
     std::stop_token stop;  ///< a stopped load throws Error(Interrupted)
@@ -35,8 +35,8 @@ struct LoadOptions {
 
 /// Loads .json (our own), .gltf, .glb, .obj; an .hdr or .exr gives a material ball under that sky. A scene without a
 /// camera gets `default`, one without light or emission the built-in sky and a warning (not for .json); see README.
-/// Warnings go to `log`. Throws Error(BadInput) with file and position, Error(Resources), or Error(Usage) for a scene
-/// or variant asked of a file that has none.
+/// Warnings go to `log`. Throws Error(BadInput) with file and position, Error(Resources), or Error(Usage) for a
+/// choice that the file does not offer.
 std::shared_ptr<const Scene> loadScene(const std::filesystem::path& path, MessageLog& log,
                                        const LoadOptions& options = {});
 

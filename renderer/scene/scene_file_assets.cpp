@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -21,9 +22,8 @@ struct AssetSource {
     std::string kind;  ///< "gltf", "obj" or a generator's name
     const JsonValue* kindValue;
     std::string file;
-    int sceneIndex = -1;
-    std::string variant;
-    const JsonValue *sceneValue = nullptr, *variantValue = nullptr;
+    SceneChoice choice;
+    const JsonValue *sceneValue = nullptr, *variantValue = nullptr, *animationValue = nullptr;
     Subdivision subdivision;
     std::unique_ptr<Procedural> generator;
 };
@@ -58,8 +58,10 @@ AssetSource readAsset(SceneFileContext& context, const JsonMember& member) {
         if (source.kind == "gltf") {
             source.sceneValue = reader.find("scene");
             source.variantValue = reader.find("variant");
-            source.sceneIndex = reader.integer("scene", 0, 1 << 20).value_or(-1);
-            source.variant = reader.text("variant").value_or("");
+            source.animationValue = reader.find("animation");
+            source.choice.index = reader.integer("scene", 0, 1 << 20).value_or(-1);
+            source.choice.variant = reader.text("variant").value_or("");
+            source.choice.animation = reader.text("animation").value_or("");
         }
     } else {
         source.generator = makeProcedural(source.kind);
@@ -71,17 +73,19 @@ AssetSource readAsset(SceneFileContext& context, const JsonMember& member) {
     return source;
 }
 
-/// What to point at when a file refuses the scene or the variant that it is asked for.
+/// What to point at when a file does not have what it is asked for.
 const JsonValue& refusedChoice(const AssetSource& source, const std::filesystem::path& path) {
-    if (!source.variantValue) return source.sceneValue ? *source.sceneValue : *source.kindValue;
-    const bool hasScene = source.sceneIndex < static_cast<int>(gltf::readChoices(path).scenes.size());
-    return hasScene ? *source.variantValue : *source.sceneValue;
+    const gltf::Choices there = gltf::readChoices(path);
+    if (source.choice.index >= static_cast<int>(there.scenes.size())) return *source.sceneValue;
+    const auto& variants = there.variants;
+    if (source.variantValue && std::find(variants.begin(), variants.end(), source.choice.variant) == variants.end())
+        return *source.variantValue;
+    return source.animationValue ? *source.animationValue : *source.kindValue;
 }
 
 Scene loadAssetFile(const SceneFileContext& context, const AssetSource& source, float begin, float end) {
     LoadOptions options = context.options;
-    options.sceneIndex = source.sceneIndex;
-    options.variant = source.variant;
+    options.choice = source.choice;
     options.subdivision = source.subdivision;
     if (context.options.progress)
         options.progress = [&](float fraction, const std::string& step) {

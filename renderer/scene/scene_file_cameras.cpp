@@ -103,7 +103,7 @@ void readRender(SceneFileContext& context, const JsonValue* section) {
         // These choose among what the one glTF file holds that a person opens.
         if (member.key.starts_with("scene."))
             throwBadInput({fmt::format("\"{}\" does nothing to a scene file", member.key),
-                           context.tree.where(member.at), "\"scene\" or \"variant\" of an asset", ""});
+                           context.tree.where(member.at), "\"scene\", \"variant\" or \"animation\" of an asset", ""});
         render.set.emplace_back(member.key, settingText(context, member));
     }
 }

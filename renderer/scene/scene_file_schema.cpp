@@ -113,7 +113,9 @@ Json assetSchema() {
     kinds.push_back(closed(
         {{"gltf", text("A .gltf or .glb file, relative to this file, or assets: and a path under $LUMISCOPE_ASSETS.")},
          {"scene", {{"type", "integer"}, {"minimum", 0}, {"description", "Which of its scenes."}}},
-         {"variant", text("Which of its material variants.")}},
+         {"variant", text("Which of its material variants.")},
+         {"animation", text("Which of its animations plays, by name or number; without, each that moves nothing that "
+                            "an earlier one moves.")}},
         "A glTF 2.0 asset."));
     Subdivision subdivision;
     Json obj = {{"obj", text("An .obj file, relative to this file, or assets: and a path under $LUMISCOPE_ASSETS.")}};

@@ -10,6 +10,7 @@
 #include "params/parameter.h"
 #include "reconstruct/module.h"
 #include "scene/scene.h"
+#include "scene/scene_choice.h"
 #include "trace/settings.h"
 
 namespace lumi {
@@ -37,8 +38,8 @@ struct RenderSettings {
 
 /// All that a user can change, addressed by ids:
 ///     render.width  path.max-depth  sampler.kind  camera.eye  camera.select  camera.jitter  time  scene.index
-///     scene.variant  environment.rotate-deg  environment.file  material.<name>.roughness  light.<name>.power
-///     view.layout  view.0.buffer  view.0.exposure  <instance>.<parameter>
+///     scene.variant  scene.animation  environment.rotate-deg  environment.file  material.<name>.roughness
+///     light.<name>.power  view.layout  view.0.buffer  view.0.exposure  <instance>.<parameter>
 /// Names of materials, lights and cameras are written as slugs: lower case, anything but letters and digits as `-`,
 /// `-2`, `-3` after the second and third of the same slug.
 /// A Document is a value: copying is cheap (scenes and meshes are shared). It knows nothing of threads.
@@ -61,8 +62,7 @@ public:
     const RenderSettings& render() const { return render_; }
     const PathSettings& path() const { return path_; }
     const ViewSettings& view(int index) const { return views_[static_cast<size_t>(index)]; }
-    int sceneIndex() const { return sceneIndex_; }
-    const std::string& sceneVariant() const { return sceneVariant_; }
+    const SceneChoice& sceneChoice() const { return sceneChoice_; }
 
     /// Instances whose views are drawn, each once, in order of the views.
     std::vector<std::string> activeInstances() const;
@@ -70,8 +70,8 @@ public:
     void configure(const std::string& instance, Module& module) const;
 
     /// Sets one value, and returns what that invalidates. Throws Error(Usage) naming the nearest id. `environment.file`
-    /// reads the image (Error(BadInput) if it cannot); `camera.select` drops the user's camera edits; `scene.index` and
-    /// `scene.variant` only take effect by loading again.
+    /// reads the image (Error(BadInput) if it cannot); `camera.select` drops the user's camera edits; what begins with
+    /// `scene.` only takes effect by loading again.
     Redo set(const std::string& id, const ParameterValue& value, const std::string& where = "");
     Redo setText(const std::string& id, const std::string& text, const std::string& where = "");
     /// Takes values back to what they were before any change, and returns what that invalidates: a camera's follow its
@@ -123,8 +123,8 @@ private:
     Values cameraEdits_;  ///< by id without `camera.`
     float time_ = 0;
     float sceneRadius_ = 0;
-    int sceneIndex_ = -1;
-    std::string sceneVariant_, environmentDigest_;
+    SceneChoice sceneChoice_;
+    std::string environmentDigest_;
     std::map<std::string, Values> instances_;  ///< what was set, by instance
 };
 

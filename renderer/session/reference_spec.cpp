@@ -37,8 +37,8 @@ ReferenceSpec referenceSpec(const Document& document) {
     if (!document.environmentDigest().empty()) edits[Document::kEnvironmentDigest] = document.environmentDigest();
     spec.sceneKey = nlohmann::json{
         {"digest", document.loadedScene()->contentDigest},
-        {"index", document.sceneIndex()},
-        {"variant", document.sceneVariant()},
+        {"index", document.sceneChoice().index},
+        {"variant", document.sceneChoice().variant},
         {"edits",
          edits}}.dump();
     return spec;

@@ -85,7 +85,8 @@ Replay parseReplay(const std::string& text, const std::string& where) {
     replay.first = member(start, "frame", json::value_t::number_integer, where).get<FrameNumber>();
     replay.start = member(start, "set", json::value_t::object, where);
     if (replay.start.contains("scene.index")) member(replay.start, "scene.index", json::value_t::number_integer, where);
-    if (replay.start.contains("scene.variant")) member(replay.start, "scene.variant", json::value_t::string, where);
+    for (const char* id : {"scene.variant", "scene.animation"})
+        if (replay.start.contains(id)) member(replay.start, id, json::value_t::string, where);
     replay.last = member(state, "frame", json::value_t::number_integer, where).get<FrameNumber>();
     for (const json& entry : member(state, "frames", json::value_t::array, where)) addFrames(replay, entry, where);
     const auto& sets = replay.sets;

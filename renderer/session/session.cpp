@@ -105,9 +105,9 @@ void Session::setInspectedPixel(std::optional<Pixel> pixel) {
     if (pixel) impl_->lookCloser();
 }
 
-void Session::open(const std::filesystem::path& scene, int sceneIndex, const std::string& variant,
+void Session::open(const std::filesystem::path& scene, const SceneChoice& choice,
                    std::vector<std::pair<std::string, std::string>> set) {
-    impl_->startLoading({scene, sceneIndex, variant, std::move(set)});
+    impl_->startLoading({scene, choice, std::move(set)});
 }
 
 bool Session::hasScene() const {
@@ -169,16 +169,14 @@ void Session::setAll(const std::vector<std::pair<std::string, ParameterValue>>& 
     }
     impl_->timeEdited = impl_->timeEdited || timeEdited;
     const uint64_t environment = skyEdited ? ++impl_->environmentGeneration : 0;
-    const bool reload =
-        next.sceneIndex() != impl_->document->sceneIndex() || next.sceneVariant() != impl_->document->sceneVariant();
+    const bool reload = next.sceneChoice() != impl_->document->sceneChoice();
     Impl::Origin origin = impl_->origin;
     if (!reload) {
         impl_->history.begin(*impl_->document, ids);
         impl_->document = std::move(next);
         impl_->noteChange(worst);
     } else {
-        origin.index = next.sceneIndex();
-        origin.variant = next.sceneVariant();
+        origin.choice = next.sceneChoice();
     }
     lock.unlock();
     if (reload) impl_->startLoading(origin);
@@ -195,10 +193,9 @@ void Session::reset(const std::vector<std::string>& ids) {
         all += id + ' ';
         if (id == "environment.file") ++impl_->environmentGeneration;  // a sky on its way would undo this
     }
-    if (next.sceneIndex() != present.sceneIndex() || next.sceneVariant() != present.sceneVariant()) {
+    if (next.sceneChoice() != present.sceneChoice()) {
         Impl::Origin origin = impl_->origin;
-        origin.index = next.sceneIndex();
-        origin.variant = next.sceneVariant();
+        origin.choice = next.sceneChoice();
         lock.unlock();
         return impl_->startLoading(origin, ids);
     }

@@ -90,7 +90,7 @@ public:
 
     /// Loads aside and swaps when done. A failure is an Error in the log, and the present scene stays.
     /// `set`: parameters (id, text) of the new document before its first frame; one that fails is an Error in the log.
-    void open(const std::filesystem::path& scene, int sceneIndex = -1, const std::string& variant = "",
+    void open(const std::filesystem::path& scene, const SceneChoice& choice = {},
               std::vector<std::pair<std::string, std::string>> set = {});
     /// Is there a document to show and change; false before the first scene is loaded.
     bool hasScene() const;

@@ -54,8 +54,7 @@ struct Session::Impl {
     /// Where the present scene came from, to load it again.
     struct Origin {
         std::filesystem::path path;
-        int index = -1;
-        std::string variant;
+        SceneChoice choice;
         std::vector<std::pair<std::string, std::string>> set;
     };
 

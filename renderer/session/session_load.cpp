@@ -104,8 +104,7 @@ void Session::Impl::startLoading(const Origin& wanted, const std::vector<std::st
 void Session::Impl::load(const Origin& wanted, const std::vector<std::string>& reset, uint64_t generation,
                          std::stop_token stop) {
     LoadOptions options;
-    options.sceneIndex = wanted.index;
-    options.variant = wanted.variant;
+    options.choice = wanted.choice;
     options.stop = stop;
     options.progress = [this, generation](float fraction, const std::string& step) {
         std::lock_guard lock(mutex);
@@ -116,8 +115,9 @@ void Session::Impl::load(const Origin& wanted, const std::vector<std::string>& r
     try {
         const auto scene = loadScene(wanted.path, log, options);
         loaded.emplace(scene);
-        loaded->set("scene.index", wanted.index);
-        loaded->set("scene.variant", wanted.variant);
+        loaded->set("scene.index", wanted.choice.index);
+        loaded->set("scene.variant", wanted.choice.variant);
+        loaded->set("scene.animation", wanted.choice.animation);
         std::unique_lock lock(mutex);
         const std::optional<Document> before = document;
         lock.unlock();

@@ -95,8 +95,9 @@ private:
             LoadOptions load;
             load.stop = options_.stop;
             for (const StudyValue& value : wanted.set) {
-                if (value.id == "scene.variant") load.variant = value.text;
-                if (value.id == "scene.index") load.sceneIndex = std::atoi(value.text.c_str());
+                if (value.id == "scene.variant") load.choice.variant = value.text;
+                if (value.id == "scene.animation") load.choice.animation = value.text;
+                if (value.id == "scene.index") load.choice.index = std::atoi(value.text.c_str());
             }
             report("loading " + wanted.name);
             scene_ = loadScene(findStudyScene(study_, wanted), log_, load);

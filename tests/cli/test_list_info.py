@@ -99,6 +99,7 @@ class Info(CommandTest):
         material = lambda name: {"name": name}
         gltf = {"asset": {"version": "2.0"}, "scene": 1, "scenes": [{"name": "Day"}, {"nodes": [0]}], "nodes": [{}],
                 "materials": [material("a")],
+                "animations": [{"name": "walk", "channels": [], "samplers": []}, {"channels": [], "samplers": []}],
                 "extensions": {"KHR_materials_variants": {"variants": [{"name": "red"}, {"name": "green"}]}}}
         (self.folder / "two.gltf").write_text(json.dumps(gltf))
         info = self.good("info", "two.gltf", "--json").json
@@ -107,8 +108,10 @@ class Info(CommandTest):
         text = self.good("info", "two.gltf", "--set", "scene.index=0", "--set", "scene.variant=green").out
         self.assertIn('scenes      2: 0 "Day" (shown), 1; --set scene.index=N shows another', text)
         self.assertIn('variants    2: "red", "green" (shown); --set scene.variant=NAME shows one', text)
+        self.assertIn('animations  2: "walk", "1"; --set scene.animation=NAME plays one alone', text)
+        self.refused(2, ["no such animation", "walk, 1", "run"], "info", "two.gltf", "--set", "scene.animation=run")
         info = self.good("info", "cornell", "--json").json
-        self.assertEqual((info["scenes"], info["variants"]), ([], []))
+        self.assertEqual((info["scenes"], info["variants"], info["animations"]), ([], [], []))
         self.assertNotIn("variants", self.good("info", "cornell").out)
 
     def test_bodies_of_lights_are_no_materials(self):

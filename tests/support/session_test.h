@@ -30,7 +30,7 @@ protected:
     }
     void open(std::vector<std::pair<std::string, std::string>> set = {}) {
         set.insert(set.begin(), {{"render.width", "32"}, {"render.height", "24"}});
-        session.open(kCornell, -1, "", set);
+        session.open(kCornell, {}, set);
         waitFor("the scene and its first picture", [&] { return session.snapshot() != nullptr; });
     }
     FrameNumber shownFrame() { return session.snapshot()->frame; }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 
+#include "base/error.h"
 #include "scene/gltf/accessor.h"
 
 namespace lumi::gltf {
@@ -78,14 +79,40 @@ std::optional<AnimationChannel> readChannel(const Document& document, const Node
     return channel;
 }
 
+std::string nameOf(const Document& document, size_t animation) {
+    const std::string& name = document.model().animations[animation].name;
+    return name.empty() ? std::to_string(animation) : name;
+}
+
+/// Number of the animation that the options ask for, by name before number; nothing if they do not.
+std::optional<size_t> chosenAnimation(const Document& document) {
+    const std::string& wanted = document.options().choice.animation;
+    if (wanted.empty()) return std::nullopt;
+    const size_t count = document.model().animations.size();
+    std::string known;
+    for (size_t a = 0; a < count; ++a) {
+        if (nameOf(document, a) == wanted) return a;
+        known += (known.empty() ? "" : ", ") + nameOf(document, a);
+    }
+    for (size_t a = 0; a < count; ++a)
+        if (std::to_string(a) == wanted) return a;
+    throwUsage({.what = "no such animation",
+                .where = document.path().filename().string(),
+                .expected = known.empty() ? "none: the file has no animations" : known,
+                .found = wanted});
+}
+
 }  // namespace
 
 void loadAnimations(const Document& document, const NodeTree& tree, Scene& scene) {
     std::set<std::pair<int, AnimatedProperty>> moved;
+    const std::optional<size_t> chosen = chosenAnimation(document);
     for (size_t a = 0; a < document.model().animations.size(); ++a) {
+        if (a != chosen.value_or(a)) continue;
         const tinygltf::Animation& source = document.model().animations[a];
         const std::string path = "/animations/" + std::to_string(a);
         Animation animation;
+        animation.name = nameOf(document, a);
         bool conflicts = false;
         for (size_t c = 0; c < source.channels.size(); ++c) {
             std::optional<AnimationChannel> channel = readChannel(document, tree, source, c, path);
@@ -97,7 +124,9 @@ void loadAnimations(const Document& document, const NodeTree& tree, Scene& scene
             animation.channels.push_back(std::move(*channel));
         }
         if (conflicts) {
-            document.info("the animation \"" + source.name + "\" moves what an earlier one moves and is not played");
+            document.info("the animation \"" + animation.name +
+                          "\" moves what an earlier one moves and is not played; " +
+                          "scene.animation (\"animation\" in a scene file) plays it alone");
             continue;
         }
         for (const AnimationChannel& channel : animation.channels) moved.insert({channel.node, channel.property});

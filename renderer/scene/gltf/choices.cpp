@@ -33,16 +33,21 @@ Choices readChoices(const std::filesystem::path& path) {
                                       ? jsonChunk(file, name)
                                       : std::string_view(reinterpret_cast<const char*>(file.data()), file.size());
     inspectJson(json, name);
-    // Accessors and nodes, most of a file, are dropped as they are read.
+    // Accessors and nodes, most of a file, are dropped as they are read, and what an animation moves.
     const Json tree = Json::parse(json.begin(), json.end(), [](int depth, Json::parse_event_t event, Json& parsed) {
-        return depth != 1 || event != Json::parse_event_t::key || parsed == "scene" || parsed == "scenes" ||
-               parsed == "extensions";
+        if (event != Json::parse_event_t::key) return true;
+        if (depth == 3) return parsed != "channels" && parsed != "samplers";
+        return depth != 1 || parsed == "scene" || parsed == "scenes" || parsed == "extensions" ||
+               parsed == "animations";
     });
     Choices choices;
     if (!tree.is_object()) return choices;
     choices.scenes = namesIn(tree, "scenes");
     if (tree.contains("scene") && tree["scene"].is_number_integer())
         choices.defaultScene = std::max(tree["scene"].get<int>(), 0);
+    choices.animations = namesIn(tree, "animations");
+    for (size_t i = 0; i < choices.animations.size(); ++i)
+        if (choices.animations[i].empty()) choices.animations[i] = std::to_string(i);
     if (tree.contains("extensions") && tree["extensions"].is_object() &&
         tree["extensions"].contains("KHR_materials_variants"))
         choices.variants = namesIn(tree["extensions"]["KHR_materials_variants"], "variants");

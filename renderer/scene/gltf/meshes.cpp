@@ -16,9 +16,9 @@
 namespace lumi::gltf {
 namespace {
 
-/// Position of `options.variant` among the file's variants, or -1 for none asked for.
+/// Position of the variant that is asked for among the file's variants, or -1 for none.
 int variantIndex(const Document& document) {
-    const std::string& wanted = document.options().variant;
+    const std::string& wanted = document.options().choice.variant;
     if (wanted.empty()) return -1;
     std::vector<std::string> names;
     if (const auto* root = extensionOf(document.model().extensions, "KHR_materials_variants"))

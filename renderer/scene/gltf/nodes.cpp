@@ -97,7 +97,7 @@ NodeTree::NodeTree(const Document& document, Scene& scene)
 
 std::vector<int> NodeTree::roots() const {
     const tinygltf::Model& model = document_.model();
-    const int wanted = document_.options().sceneIndex;
+    const int wanted = document_.options().choice.index;
     if (wanted >= static_cast<int>(model.scenes.size()))
         throwUsage({.what = "no such scene in the file",
                     .where = document_.path().filename().string(),

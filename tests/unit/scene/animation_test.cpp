@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "gltf_support.h"
 #include "math/vector.h"
 #include "scene/node_pose.h"
 
@@ -141,6 +142,31 @@ TEST(Animation, LoopsWrapAtTheirDuration) {
     EXPECT_FLOAT_EQ(localTime(animation, -0.5f), 1.5f);
     animation.loop = false;
     EXPECT_FLOAT_EQ(localTime(animation, 7), 7);
+}
+
+TEST(Animation, OneOfAGltfPlaysAlone) {
+    test::GltfBuilder file;
+    file.triangle();
+    const int times = file.floats({0, 1}, "SCALAR", 1);
+    for (const float end : {1.0f, 2.0f, 3.0f})
+        file.json["animations"].push_back(
+            {{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
+             {"samplers", {{{"input", times}, {"output", file.floats({0, 0, 0, end, 0, 0}, "VEC3", 3)}}}}});
+    file.json["animations"][1]["name"] = "run";
+    const auto endOf = [&](const std::string& animation) {
+        MessageLog log;
+        LoadOptions options;
+        options.choice.animation = animation;
+        const Scene scene = file.load(log, options);
+        EXPECT_EQ(scene.animations.size(), 1u);
+        EXPECT_EQ(log.messages().size(), animation.empty() ? 2u : 0u) << "the others are told of";
+        return poseNodes(scene, 1.0f).worldFromNode[0][3].x;
+    };
+    EXPECT_EQ(endOf(""), 1);
+    EXPECT_EQ(endOf("run"), 2);
+    EXPECT_EQ(endOf("1"), 2);
+    EXPECT_EQ(endOf("2"), 3);
+    test::expectError(ErrorKind::Usage, [&] { endOf("walk"); }, {"no such animation", "0, run, 2", "walk"});
 }
 
 }  // namespace

@@ -252,9 +252,9 @@ TEST(GltfFeatures, ScenesAreChosenByIndex) {
     EXPECT_EQ(file.load().instances.at(0).name, "second");
     MessageLog log;
     LoadOptions options;
-    options.sceneIndex = 0;
+    options.choice.index = 0;
     EXPECT_EQ(file.load(log, options).instances.at(0).name, "first");
-    options.sceneIndex = 2;
+    options.choice.index = 2;
     expectError(ErrorKind::Usage, [&] { file.load(log, options); }, {"below 2"});
     file.json.erase("scenes");
     file.json.erase("scene");
@@ -271,9 +271,9 @@ TEST(GltfFeatures, Variants) {
     MessageLog log;
     LoadOptions options;
     EXPECT_EQ(file.load(log, options).instances[0].mesh->material, 0u);
-    options.variant = "night";
+    options.choice.variant = "night";
     EXPECT_EQ(file.load(log, options).instances[0].mesh->material, 1u);
-    options.variant = "dusk";
+    options.choice.variant = "dusk";
     expectError(ErrorKind::Usage, [&] { file.load(log, options); }, {"day, night", "dusk"});
 }
 

@@ -46,15 +46,17 @@ TEST(LoadScene, UnknownKindsAreNamed) {
     expectError(ErrorKind::BadInput, [&] { loadScene(folder / "d.json", log); }, {"d.json: is a directory"});
 }
 
-TEST(LoadScene, OnlyGltfHasScenesAndVariants) {
+TEST(LoadScene, OnlyGltfHasScenesVariantsAndAnimations) {
     TemporaryFolder folder;
     writeFileAtomically(folder / "a.obj", std::string_view("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
     MessageLog log;
-    LoadOptions scene, variant;
-    scene.sceneIndex = 7, variant.variant = "red";
+    LoadOptions scene, variant, animation;
+    scene.choice.index = 7, variant.choice.variant = "red", animation.choice.animation = "run";
     expectError(ErrorKind::Usage, [&] { loadScene(folder / "a.obj", log, scene); }, {"one scene", "scene.index", "7"});
     expectError(ErrorKind::Usage, [&] { loadScene(folder / "a.obj", log, variant); },
                 {"variants", "scene.variant", "red"});
+    expectError(ErrorKind::Usage, [&] { loadScene(folder / "a.obj", log, animation); },
+                {"animations", "scene.animation", "run"});
     EXPECT_NE(loadScene(folder / "a.obj", log), nullptr);
 }
 

@@ -325,9 +325,10 @@ TEST(SceneFile, AChoiceThatAnAssetDoesNotHaveIsPointedAt) {
     expectPart(refusalOf("\"scene\": 7"), "s.json:2:45: asset \"a\": a.gltf: no such scene in the file");
     expectPart(refusalOf("\"scene\": 7, \"variant\": \"red\""), "s.json:2:45: asset \"a\": a.gltf: no such scene");
     expectPart(refusalOf("\"scene\": 0, \"variant\": \"red\""), "s.json:2:59: asset \"a\": a.gltf: no such material");
+    expectPart(refusalOf("\"scene\": 0, \"animation\": \"a\""), "s.json:2:61: asset \"a\": a.gltf: no such animation");
     EXPECT_EQ(refusal(R"({"version": 1, "render": {"set": {"scene.variant": "red"}}})"),
-              "s.json:1:35: \"scene.variant\" does nothing to a scene file; expected \"scene\" or \"variant\" of an "
-              "asset");
+              "s.json:1:35: \"scene.variant\" does nothing to a scene file; expected \"scene\", \"variant\" or "
+              "\"animation\" of an asset");
 }
 
 TEST(SceneFile, UnusedAssetsWarnAndAreNotBuilt) {

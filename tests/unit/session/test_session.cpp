@@ -223,7 +223,7 @@ TEST_F(SessionTest, AFailedLoadKeepsTheScene) {
 TEST_F(SessionTest, ScenesCanBeLoadedAndCancelledAtWill) {
     open();
     for (int i = 0; i < 20; ++i) {
-        session.open(kCornell, -1, "", {{"render.width", std::to_string(16 + i)}, {"render.height", "8"}});
+        session.open(kCornell, {}, {{"render.width", std::to_string(16 + i)}, {"render.height", "8"}});
         if (i % 3 == 0) session.cancelLoading();
         if (i % 4 == 0) session.setText("path.max-depth", "2");
         std::this_thread::sleep_for(std::chrono::milliseconds(i % 5));

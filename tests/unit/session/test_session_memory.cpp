@@ -60,7 +60,7 @@ TEST_F(SessionMemory, LoadingCancellingAndLoadingAgainInASession) {
     TemporaryFolder folder;
     const auto paths = scenes(folder);
     const auto load = [&](const std::filesystem::path& path, int width, bool cancel) {
-        session.open(path, -1, "", {{"render.width", std::to_string(width)}, {"render.height", "12"}});
+        session.open(path, {}, {{"render.width", std::to_string(width)}, {"render.height", "12"}});
         if (cancel) return session.cancelLoading();
         waitFor("the scene", [&] { return !session.loadStatus().loading; });
         waitFor("its picture", [&] {

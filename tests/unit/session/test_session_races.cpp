@@ -29,7 +29,7 @@ protected:
     }
     void release() { ProbeModule::holds = false; }
     void loadMeanwhile(const std::string& width) {
-        session.open(kCornell, -1, "", {{"render.width", width}, {"render.height", "8"}, {"view.0.module", "probe"}});
+        session.open(kCornell, {}, {{"render.width", width}, {"render.height", "8"}, {"view.0.module", "probe"}});
         waitFor("the scene", [&] { return !session.loadStatus().loading; });
     }
     Replay state() { return parseReplay(session.stateJson(), "state"); }
@@ -196,7 +196,7 @@ TEST_F(SessionRaces, WhatIsBeingSavedAtTheEndIsWritten) {
     {
         std::jthread later;
         Session ending(messages);
-        ending.open(kCornell, -1, "", {{"render.width", "32"}, {"render.height", "24"}, {"view.0.module", "probe"}});
+        ending.open(kCornell, {}, {{"render.width", "32"}, {"render.height", "24"}, {"view.0.module", "probe"}});
         waitFor("a picture", [&] { return ending.snapshot() != nullptr; });
         ending.setRendering(false);
         ProbeModule::holds = true;
@@ -254,12 +254,12 @@ TEST_F(SessionRaces, AResetOfTheVariantTakesTheOthersAlong) {
     TemporaryFolder folder;
     std::ofstream(folder / "scene.gltf")
         << R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": []}, {"nodes": []}], "scene": 0})";
-    session.open(folder / "scene.gltf", 1, "",
+    session.open(folder / "scene.gltf", {.index = 1},
                  {{"render.width", "32"}, {"render.height", "24"}, {"path.max-depth", "2"}});
     waitFor("the scene", [&] { return session.snapshot() != nullptr; });
-    ASSERT_EQ(session.document().sceneIndex(), 1);
+    ASSERT_EQ(session.document().sceneChoice().index, 1);
     session.reset({"path.max-depth", "render.width", "scene.index"});
-    waitFor("the other scene", [&] { return session.document().sceneIndex() == -1; });
+    waitFor("the other scene", [&] { return session.document().sceneChoice().index == -1; });
     const Document fresh(session.document().loadedScene());
     EXPECT_EQ(session.document().path().maxDepth, fresh.path().maxDepth);
     EXPECT_EQ(session.document().render().width, fresh.render().width);
