@@ -85,16 +85,15 @@ bool mayMeet(const Bounds3& box, const Vec3& origin, const std::array<Vec3, kRay
     return false;
 }
 
-/// Adds what the rays from `origin` meet of the instance at time 0.
-void traceInstance(const NodePose& pose, PosedSkins& skins, const Instance& instance, const Vec3& origin,
-                   const std::array<Vec3, kRays>& directions, MeshBounds& meshBounds, FirstHits& hits) {
+/// Adds what the rays from `origin` meet of the instance, which lies in `box`, at time 0.
+void traceInstance(const NodePose& pose, PosedSkins& skins, const Instance& instance, const Bounds3& box,
+                   const Vec3& origin, const std::array<Vec3, kRays>& directions, FirstHits& hits) {
+    if (!mayMeet(box, origin, directions, hits)) return;
     const Mesh& mesh = *instance.mesh;
     const bool skinned = instance.skin >= 0 && !mesh.skin.empty();
     Mat4 worldFromObject(1);
     DeformedVertices deformed;
     if (instance.node >= 0 && !skinned) worldFromObject = pose.worldFromNode[static_cast<size_t>(instance.node)];
-    const auto placed = [&] { return transformedBounds(meshBounds.of(mesh), worldFromObject); };
-    if (!mesh.deforms() && !mayMeet(placed(), origin, directions, hits)) return;
     if (mesh.deforms()) {
         const std::vector<Mat4>& joints = skins.of(skinned ? instance.skin : -1);
         deformed = deform(
@@ -160,10 +159,11 @@ FirstHits lookAround(const Scene& scene, const Vec3& origin, const std::stop_tok
     FirstHits hits;
     MeshBounds meshBounds;
     constexpr size_t kPollStride = 1024;
-    for (size_t i = 0; i < scene.instances.size(); ++i) {
-        if (i % kPollStride == 0) checkLoadStop(scene, stop);
-        traceInstance(pose, skins, scene.instances[i], origin, directions, meshBounds, hits);
-    }
+    size_t next = 0;
+    eachBounds(scene, pose, meshBounds, [&](const Bounds3& box) {
+        if (next % kPollStride == 0) checkLoadStop(scene, stop);
+        traceInstance(pose, skins, scene.instances[next++], box, origin, directions, hits);
+    });
     return hits;
 }
 
