@@ -92,6 +92,7 @@ Scene loadGltf(const std::filesystem::path& path, MessageLog& log, const LoadOpt
     placeCameras(scene);
     const uint64_t parts[2] = {document.contentDigest(), library.digest()};
     scene.contentDigest = digest({reinterpret_cast<const uint8_t*>(parts), sizeof(parts)});
+    document.tellOfMore();
     document.progress(1, "Loaded " + path.filename().string());
     return scene;
 }

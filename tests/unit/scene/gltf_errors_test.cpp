@@ -342,6 +342,16 @@ TEST(GltfErrors, VariantsAreCheckedWhetherChosenOrNot) {
         {"/meshes/0/primitives/0/extensions/KHR_materials_variants/mappings/0/material", "77"});
 }
 
+TEST(GltfErrors, OfManyFaultsTheFirstAreListed) {
+    GltfBuilder file;
+    file.triangle();
+    for (int i = 0; i < 1000; ++i) file.json["meshes"][0]["primitives"].push_back({{"attributes", {{"_OWN", i}}}});
+    MessageLog log;
+    EXPECT_EQ(file.load(log).triangleCount(), 1);
+    ASSERT_EQ(log.warnings().size(), 201u);
+    EXPECT_EQ(log.warnings().back(), "test.glb: and 800 more faults");
+}
+
 TEST(GltfErrors, StoppedLoadsAreInterrupted) {
     GltfBuilder file;
     file.triangle();
