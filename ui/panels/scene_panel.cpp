@@ -61,7 +61,8 @@ void drawScenePanel(AppState& state) {
         parameterRows(state, "environment.");
     drawNamed(state, "Lights", "light");
     drawNamed(state, "Materials", "material");
-    if (!state.document.group("scene.").empty() && section("Variant", false)) parameterRows(state, "scene.");
+    if (!state.document.group("scene.").empty() && section("Scene, variant, animation", false))
+        parameterRows(state, "scene.");
     if (scene && section("About this scene")) drawCounts(*scene);
 }
 
