@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include "scene/material_textures.h"
 #include "scene/node_pose.h"
@@ -15,8 +16,16 @@ void addTexture(const Texture& texture, std::set<const TextureImage*>& images) {
     if (texture) images.insert(texture.image.get());
 }
 
+/// Of keys in order of time those that the place at `time` depends on: two before it and two after it.
+std::span<const SceneCamera::Key> keysAround(std::span<const SceneCamera::Key> keys, float time) {
+    const auto later = std::upper_bound(keys.begin(), keys.end(), time,
+                                        [](float t, const SceneCamera::Key& key) { return t < key.time; });
+    const auto at = static_cast<size_t>(later - keys.begin()), first = at > 2 ? at - 2 : 0;
+    return keys.subspan(first, std::min(at + 2, keys.size()) - first);
+}
+
 /// Keys as animation channels, so that every curve in a scene is evaluated by one function.
-float keyed(const std::vector<SceneCamera::Key>& keys, Interpolation interpolation, float time,
+float keyed(std::span<const SceneCamera::Key> keys, Interpolation interpolation, float time,
             float (*read)(const SceneCamera::Key&)) {
     AnimationChannel channel;
     channel.components = 1;
@@ -32,7 +41,8 @@ float keyed(const std::vector<SceneCamera::Key>& keys, Interpolation interpolati
 
 void placeByKeys(Camera& camera, const SceneCamera& source, float time) {
     using Key = SceneCamera::Key;
-    const auto at = [&](float (*read)(const Key&)) { return keyed(source.keys, source.interpolation, time, read); };
+    const std::span<const Key> keys = keysAround(source.keys, time);
+    const auto at = [&](float (*read)(const Key&)) { return keyed(keys, source.interpolation, time, read); };
     camera.eye = {at([](const Key& k) { return k.eye.x; }), at([](const Key& k) { return k.eye.y; }),
                   at([](const Key& k) { return k.eye.z; })};
     camera.target = {at([](const Key& k) { return k.target.x; }), at([](const Key& k) { return k.target.y; }),
