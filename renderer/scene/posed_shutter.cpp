@@ -5,12 +5,10 @@
 
 #include "base/error.h"
 #include "scene/bounds.h"
+#include "scene/shutter_segments.h"
 
 namespace lumi {
 namespace {
-
-/// How far from the straight way something may stray between two moments, as a part of its size.
-constexpr float kMostStray = 1e-3f;
 
 bool equalSpans(std::span<const float> a, std::span<const float> b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end());
@@ -34,7 +32,7 @@ bool strays(const Mat4& a, const Mat4& truth, const Mat4& b, float part, const B
     if (a == truth && a == b) return false;
     const Mat4 difference = between(a, b, part) - truth;
     const Bounds3 world = transformedBounds(box, truth);
-    const float allowed = kMostStray * std::max(world.radius(), 1e-6f);
+    const float allowed = kMostShutterStray * std::max(world.radius(), 1e-6f);
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3 p(corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
                      corner & 4 ? box.upper.z : box.lower.z);
@@ -52,7 +50,7 @@ bool strays(const Instance& instance, const PosedMoment& a, const PosedMoment& t
     const auto weightsA = morphWeightsOf(instance, a), weights = morphWeightsOf(instance, truth),
                weightsB = morphWeightsOf(instance, b);
     for (size_t i = 0; i < weights.size() && i < weightsA.size() && i < weightsB.size(); ++i)
-        if (std::abs(glm::mix(weightsA[i], weightsB[i], part) - weights[i]) > kMostStray) return true;
+        if (std::abs(glm::mix(weightsA[i], weightsB[i], part) - weights[i]) > kMostShutterStray) return true;
     const auto jointsA = jointsOf(instance, a), joints = jointsOf(instance, truth), jointsB = jointsOf(instance, b);
     return anyJoint(instance, joints.size(),
                     [&](size_t j) { return strays(jointsA[j], joints[j], jointsB[j], part, meshBounds); });
@@ -117,26 +115,16 @@ std::shared_ptr<const DeformedVertices> deformAt(const Instance& instance, const
 
 std::vector<PosedMoment> shutterMoments(const Scene& scene, float open, float close,
                                         std::span<const Bounds3> meshBounds, const std::stop_token& stop) {
-    std::vector<PosedMoment> moments{poseMoment(scene, open), poseMoment(scene, close)};
-    while (moments.size() - 1 < kMostShutterSegments) {
-        std::vector<PosedMoment> finer;
-        const size_t segments = 2 * (moments.size() - 1);
-        bool straight = true;
-        for (size_t i = 0; i + 1 < moments.size(); ++i) {
-            if (stop.stop_requested()) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
-            const auto part = static_cast<float>(2 * i + 1) / static_cast<float>(segments);
-            PosedMoment middle = poseMoment(scene, glm::mix(open, close, part));
-            for (size_t k = 0; k < scene.instances.size() && straight; ++k)
-                straight = !strays(scene.instances[k], moments[i], middle, moments[i + 1], 0.5f, meshBounds[k]);
-            finer.push_back(moments[i]);
-            finer.push_back(std::move(middle));
-        }
-        // A wave that crosses the straight way at its middle shows a quarter further on: two segments at least.
-        if (straight && moments.size() > 2) break;
-        finer.push_back(moments.back());
-        moments = std::move(finer);
-    }
-    return moments;
+    const auto at = [&](float part) {
+        if (stop.stop_requested()) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
+        return poseMoment(scene, glm::mix(open, close, part));
+    };
+    const auto anyStrays = [&](const PosedMoment& a, const PosedMoment& truth, const PosedMoment& b, float part) {
+        for (size_t k = 0; k < scene.instances.size(); ++k)
+            if (strays(scene.instances[k], a, truth, b, part, meshBounds[k])) return true;
+        return false;
+    };
+    return straightSegments(shutterTurns(scene, open, close), at, anyStrays);
 }
 
 std::shared_ptr<const ShutterTrack> shutterTrack(const Instance& instance, std::span<const PosedMoment> moments,

@@ -27,10 +27,8 @@ std::span<const Mat4> jointsOf(const Instance& instance, const PosedMoment& mome
 bool deformsAlike(const Instance& instance, const PosedMoment& a, const PosedMoment& b);
 std::shared_ptr<const DeformedVertices> deformAt(const Instance& instance, const PosedMoment& moment);
 
-/// Moments from `open` to `close` seconds, a power of two and one more of them, so close to each other that between two
-/// of them everything goes straight, within a thousandth of its size; at most kMostShutterSegments and one more.
-/// `meshBounds` as in PosedScene. Throws Error(Interrupted) once stopped.
-constexpr size_t kMostShutterSegments = 64;
+/// Moments from `open` to `close` seconds by straightSegments(): between two of them every instance goes straight,
+/// within a thousandth of its size. `meshBounds` as in PosedScene. Throws Error(Interrupted) once stopped.
 std::vector<PosedMoment> shutterMoments(const Scene& scene, float open, float close,
                                         std::span<const Bounds3> meshBounds, const std::stop_token& stop);
 

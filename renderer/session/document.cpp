@@ -11,8 +11,10 @@
 #include "base/error.h"
 #include "params/json.h"
 #include "reconstruct/catalog.h"
+#include "scene/camera_track.h"
 #include "scene/light_body.h"
 #include "scene/reach.h"
+#include "scene/shutter_segments.h"
 #include "session/document_fields.h"
 
 namespace lumi {
@@ -178,15 +180,11 @@ Camera Document::cameraAt(float time) const {
 }
 
 CameraTrack Document::cameraTrack() const {
-    constexpr int kSegments = 8;
     const float open = camera().shutter / render_.fps;
-    CameraTrack track;
-    if (!(open > 0) || !cameraMoves()) return track;
-    for (int i = 0; i <= kSegments; ++i)
-        track.push_back(
-            poseCamera(cameraAt(time_ + open * static_cast<float>(i) / kSegments), {render_.width, render_.height}));
-    const bool still = std::all_of(track.begin(), track.end(), [&](const CameraPose& p) { return p == track[0]; });
-    return still ? CameraTrack() : track;
+    if (!(open > 0) || !cameraMoves()) return {};
+    const SceneCamera& source = edited_->cameras[static_cast<size_t>(camera_)];
+    return lumi::cameraTrack([&](float part) { return cameraAt(time_ + open * part); },
+                             shutterTurns(*edited_, source, time_, time_ + open), {render_.width, render_.height});
 }
 
 std::vector<std::string> Document::activeInstances() const {

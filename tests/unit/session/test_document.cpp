@@ -1,5 +1,6 @@
 #include "session/document.h"
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -329,6 +330,25 @@ TEST(Document, AppliesWhatIsSelectedBeforeItsEdits) {
     EXPECT_EQ(document.camera().eye, Vec3(9));
     EXPECT_EQ(document.cameraIndex(), 1);
     expectError(ErrorKind::Usage, [&] { document.apply({{"nothing", 1}}, "shot.png"); }, {"shot.png", "nothing"});
+}
+
+TEST(Document, ItsCameraTrackFollowsTheKeysUnderTheOpenShutter) {
+    auto scene = std::make_shared<Scene>(*movingScene());
+    scene->cameras[0].interpolation = Interpolation::Linear;
+    EXPECT_TRUE(Document(scene).cameraTrack().empty()) << "the shutter is open for an instant";
+    scene->cameras[0].camera.shutter = 60;
+    EXPECT_EQ(Document(scene).cameraTrack().size(), 3u) << "half of a straight way";
+    // A glance aside between the halvings of the shutter.
+    const SceneCamera::Key rest{.time = 0, .eye = {0, 2, 5}};
+    scene->cameras[0].keys.assign(5, rest);
+    const float times[] = {0, 0.40f, 0.4375f, 0.475f, 1};
+    for (size_t i = 0; i < 5; ++i) scene->cameras[0].keys[i].time = times[i];
+    scene->cameras[0].keys[2].eye.x = 3;
+    const CameraTrack track = Document(scene).cameraTrack();
+    EXPECT_TRUE(std::any_of(track.begin(), track.end(), [](const CameraPose& p) { return p.position().x > 2.9f; }));
+    Document fixed(scene);
+    fixed.setText("camera.eye", "0,2,5");
+    EXPECT_TRUE(fixed.cameraTrack().empty());
 }
 
 }  // namespace
