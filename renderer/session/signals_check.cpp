@@ -35,6 +35,13 @@ Camera orbited(Camera camera, float degrees) {
     return camera;
 }
 
+/// The document's camera over the open shutter, for the small image.
+CameraTrack smallTrack(const Document& document, Extent2 extent) {
+    CameraTrack track = document.cameraTrack();
+    for (CameraPose& pose : track) pose.extent = extent;
+    return track;
+}
+
 FrameCheck checkFrame(Tracer& tracer, const Tracer& before, const FrameSampling& sampling, std::stop_token stop) {
     Signals signals;
     if (!tracer.sample(sampling, signals, stop)) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
@@ -68,6 +75,7 @@ std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop
     // With the shutter open every pixel has a time of its own, and the rules hold at that time.
     const float open = document.camera().shutter / document.render().fps;
     sampling.shutterOpen = open > 0;
+    sampling.cameraTrack = sampling.previousCameraTrack = smallTrack(document, extent);
 
     const auto first = poseScene(document.scene(), {start, start + open, start}, nullptr, sceneStop);
     // What moves is looked up in a scene of its own, not in what the signals were made of.
@@ -82,12 +90,16 @@ std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop
     sampling.frame = 1;
     sampling.firstSample = kSamples;
     sampling.previousCamera = sampling.camera;
-    sampling.camera = poseCamera(orbited(document.camera(), kOrbitDeg), extent);
+    sampling.cameraTrack = smallTrack(document, extent);
+    const bool moving = !sampling.cameraTrack.empty() || !sampling.previousCameraTrack.empty();
+    // A camera that moves by itself is left to that.
+    sampling.camera = poseCamera(moving ? document.camera() : orbited(document.camera(), kOrbitDeg), extent);
     sampling.jitter = Jitter::PerFrame;
     tracer.bind(poseScene(document.scene(), {document.time(), document.time() + open, start}, first.get(), sceneStop),
                 sceneStop);
     checks.push_back(checkFrame(tracer, before, sampling, stop));
-    checks.back().what = size + ", jitter per frame, camera moved" + (animated ? ", one frame later" : "");
+    checks.back().what = size + ", jitter per frame, camera " + (moving ? "moving under an open shutter" : "moved") +
+                         (animated ? ", one frame later" : "");
     return checks;
 }
 

@@ -16,9 +16,10 @@ struct FrameCheck {
     bool holds() const;
 };
 
-/// Traces two small frames of the document, the second with the camera moved on a small orbit around what it looks at
-/// and, where something is animated, one frame later; verifies both. `tracer` is bound to other
-/// moments afterwards. Throws Error(Interrupted) when stopped; building the scene ends with `sceneStop` alone.
+/// Traces two small frames of the document, the second with the camera moved on a small orbit around what it looks at,
+/// unless it moves by itself while its shutter is open, and, where something is animated, one frame later; verifies
+/// both. `tracer` is bound to other moments afterwards. Throws Error(Interrupted) when stopped; building the scene ends
+/// with `sceneStop` alone.
 std::vector<FrameCheck> checkFrames(Document document, Tracer& tracer, std::stop_token stop, std::stop_token sceneStop);
 
 }  // namespace lumi

@@ -24,11 +24,12 @@ struct ContractFinding {
 /// What checkSignals() needs; ask the tracer for all of it.
 SignalSet contractSignals();
 
-/// Verifies what every filter assumes of its input: finite values, unit normals, albedo in [0,1], the lighting
-/// identity, depth and position that agree with the camera, motion vectors that lead to where the surface was, a jitter
-/// distributed as `sampling.jitter` says (through a pinhole: a lens leaves nothing to check), ids that exist, an empty
-/// sky. `signals` was made by tracer.sample(sampling); the tracer is still bound to the same pose, and `before` to the
-/// previous frame's, posed by itself: where it has a surface, the surface was. Where nothing moves it may be `tracer`.
+/// Verifies what every filter assumes of its input: finite values, unit normals, albedo in [0,1], the lighting identity
+/// and its sums, a variance that samples can have, depth, its gradient and position that agree with the camera, motion
+/// vectors that lead to where and how deep the surface or the sky was, the jitter that `sampling.jitter` says (through
+/// a pinhole: a lens leaves nothing to check), ids that exist, an empty sky. `signals` was made by
+/// tracer.sample(sampling); the tracer is still bound to the same pose, and `before` to the previous frame's, posed by
+/// itself: where it has a surface, the surface was. Where nothing moves it may be `tracer`.
 std::vector<ContractFinding> checkSignals(const Signals& signals, const FrameSampling& sampling, const Tracer& tracer,
                                           const Tracer& before);
 

@@ -42,6 +42,19 @@ TEST(FrameEngine, ASceneWhoseBuildingWasStoppedIsBuiltTheNextTime) {
     EXPECT_TRUE(stopped.engine.preview(document, {8, 6}).has_value());
 }
 
+TEST(FrameEngine, ChecksACameraThatMovesWhileItsShutterIsOpen) {
+    Document document(movingScene());
+    for (const bool open : {false, true}) {
+        document.setText("camera.shutter", open ? "0.5" : "0");
+        Engine e;
+        const std::vector<FrameCheck> checks = e.engine.checkSignals(document, {}, {});
+        ASSERT_EQ(checks.size(), 2u);
+        for (const FrameCheck& check : checks)
+            for (const ContractFinding& finding : check.findings) EXPECT_TRUE(finding.holds()) << finding.text();
+        EXPECT_EQ(checks[1].what.find("under an open shutter") != std::string::npos, open) << checks[1].what;
+    }
+}
+
 TEST(FrameEngine, ChangesAreTold) {
     const auto changesAfter = [](const char* id, const char* text) {
         Engine e;
