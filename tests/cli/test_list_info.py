@@ -150,14 +150,14 @@ class Info(CommandTest):
                              "render.height=90").json
             checks = info["checks"]
             self.assertEqual({check["frame"] for check in checks}, {0, 1})
-            self.assertEqual(len({check["rule"] for check in checks if check["frame"] == 0}), 12)
+            self.assertEqual(len({check["rule"] for check in checks if check["frame"] == 0}), 16)
             for check in checks:
                 self.assertTrue(check["holds"] and check["violations"] == 0, (scene, check))
             for rule in ("normals", "motion", "radiance", "depth"):
                 self.assertTrue(any(rule in check["rule"] and check["checked"] > 1000 for check in checks), rule)
         self.assertNotIn("checks", self.good("info", "cornell", "--json").json)
         text = self.good("info", "cornell", "--check").out
-        self.assertEqual(text.count("  good "), 24)
+        self.assertEqual(text.count("  good "), 32)
         self.assertNotIn("BROKEN", text)
 
     def test_the_signals_hold_with_an_up_direction_that_is_none(self):
