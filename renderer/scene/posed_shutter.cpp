@@ -10,10 +10,6 @@
 namespace lumi {
 namespace {
 
-bool equalSpans(std::span<const float> a, std::span<const float> b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end());
-}
-
 /// Does `holds(joint)` for one of the joints that bend the instance? Asks for those that its mesh names where these are
 /// fewer than the skin's, so that many small parts of a large skeleton cost no more than their vertices do.
 template <typename Holds>
@@ -104,7 +100,7 @@ std::span<const Mat4> jointsOf(const Instance& instance, const PosedMoment& mome
 
 bool deformsAlike(const Instance& instance, const PosedMoment& a, const PosedMoment& b) {
     if (&a == &b) return true;
-    if (!equalSpans(morphWeightsOf(instance, a), morphWeightsOf(instance, b))) return false;
+    if (!std::ranges::equal(morphWeightsOf(instance, a), morphWeightsOf(instance, b))) return false;
     const auto jointsA = jointsOf(instance, a), jointsB = jointsOf(instance, b);
     return !anyJoint(instance, jointsA.size(), [&](size_t j) { return jointsA[j] != jointsB[j]; });
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/parallel.h"
 #include "math/sin_cos.h"
@@ -15,8 +16,6 @@ namespace {
 constexpr int kMostColumns = 1024, kLeastColumns = 64;
 /// How much the second moment of a light sample may grow by a coarser grid.
 constexpr double kMostGrowth = 1.2;
-
-constexpr double kPiExact = 3.14159265358979323846;
 
 /// The first whole number that is not below numerator / denominator.
 int firstNotBelow(int64_t numerator, int64_t denominator) {
@@ -137,7 +136,7 @@ EnvironmentLight::Grid EnvironmentLight::finestGrid() const {
         for (int row = static_cast<int>(begin); row < end; ++row) {
             const int y0 = static_cast<int>(int64_t(row) * height_ / grid.rows);
             const int y1 = firstNotBelow(int64_t(row + 1) * height_, grid.rows);
-            const double sine = std::sin(kPiExact * (row + 0.5) / grid.rows);
+            const double sine = std::sin(std::numbers::pi * (row + 0.5) / grid.rows);
             for (int column = 0; column < grid.columns; ++column) {
                 const int x0 = static_cast<int>(int64_t(column) * width_ / grid.columns);
                 const int x1 = firstNotBelow(int64_t(column + 1) * width_, grid.columns);
@@ -163,7 +162,7 @@ double EnvironmentLight::texelMeanLuminance() const {
         for (int y = static_cast<int>(begin); y < end; ++y) {
             const auto row = static_cast<size_t>(y);
             for (int x = 0; x < width_; ++x) rowLight[row] += texelLuminance(x, y);
-            rowSine[row] = std::sin(kPiExact * (y + 0.5) / height_);
+            rowSine[row] = std::sin(std::numbers::pi * (y + 0.5) / height_);
             rowLight[row] *= rowSine[row];
         }
     });
