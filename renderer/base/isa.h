@@ -3,7 +3,8 @@
 
 namespace lumi {
 
-/// Instruction sets that our kernels are compiled for: the x86-64 levels 1 (SSE2), 3 (AVX2, FMA) and 4 (AVX-512).
+/// Instruction sets that our kernels are compiled for: the x86-64 levels 2 (SSE4.2), 3 (AVX2, FMA) and 4
+/// (AVX-512).
 enum class Isa { Baseline, V3, V4 };
 
 /// The best level that this machine has.
