@@ -20,7 +20,6 @@ namespace {
 const std::string kFolder = "@asset";
 
 constexpr uint64_t kMaxFileBytes = (uint64_t(1) << 32) - 1;  ///< GLB lengths are 32-bit
-constexpr size_t kMostWarnings = 200;                        ///< different ones, of one file
 
 /// Extensions that the loader understands, in the order of the glTF registry.
 constexpr std::array kSupportedExtensions = {"EXT_mesh_gpu_instancing",
@@ -83,7 +82,7 @@ bool keepEncoded(tinygltf::Image* image, const int index, std::string*, std::str
 }  // namespace
 
 Document::Document(const std::filesystem::path& path, MessageLog& log, const LoadOptions& options)
-    : path_(path), name_(path.filename().string()), log_(log), options_(options) {
+    : path_(path), name_(path.filename().string()), log_(log), warnings_(name_, log), options_(options) {
     progress(0, "Reading " + name_);
     const std::vector<uint8_t> file = readFile(path, kMaxFileBytes);
     digest_ = digest64(file);
@@ -100,22 +99,6 @@ Document::Document(const std::filesystem::path& path, MessageLog& log, const Loa
     }
     for (const std::string& name : model_.extensionsUsed)
         if (!isSupported(name)) warn("the extension \"" + name + "\" is not supported; what it adds is left out");
-}
-
-void Document::warn(const std::string& text) const {
-    {
-        const std::lock_guard lock(warningsMutex_);
-        if (warnings_.size() < kMostWarnings) warnings_.insert(text);
-        if (!warnings_.contains(text)) {
-            ++moreWarnings_;
-            return;
-        }
-    }
-    log_.warning(name_ + ": " + text);
-}
-
-void Document::tellOfMore() const {
-    if (moreWarnings_ > 0) log_.warning(name_ + ": and " + std::to_string(moreWarnings_) + " more faults");
 }
 
 void Document::parse(std::span<const uint8_t> file) {

@@ -2,12 +2,11 @@
 #include <tiny_gltf.h>
 
 #include <filesystem>
-#include <mutex>
 #include <span>
 #include <string>
-#include <unordered_set>
 #include <vector>
 
+#include "scene/file_warnings.h"
 #include "scene/load.h"
 
 namespace lumi::gltf {
@@ -39,10 +38,9 @@ public:
     /// Throws Error(BadInput) headed "file.gltf: jsonPath".
     [[noreturn]] void fail(const std::string& jsonPath, const std::string& what, const std::string& expected = {},
                            const std::string& found = {}) const;
-    /// One line in the message log, headed by the file; the same text is listed once. Of a file that is all wrong the
-    /// first texts are listed, and tellOfMore() says how many there were besides.
-    void warn(const std::string& text) const;
-    void tellOfMore() const;
+    /// One line in the message log, headed by the file.
+    void warn(const std::string& text) const { warnings_.warn(text); }
+    void tellOfMore() const { warnings_.tellOfMore(); }
     void info(const std::string& text) const { log_.info(name_ + ": " + text); }
 
     /// Throws unless `index` is a valid index into a collection of `count` things called `collection`.
@@ -72,6 +70,7 @@ private:
     std::filesystem::path path_;
     std::string name_;  ///< file name, heads every message
     MessageLog& log_;
+    mutable FileWarnings warnings_;
     const LoadOptions& options_;
     tinygltf::Model model_;
     std::vector<ImageSource> images_;
@@ -80,9 +79,6 @@ private:
     size_t externalBuffersRead_ = 0;
     std::string missingFile_;  ///< the last file that was asked for, and that it is not there
     std::filesystem::path lastImageFile_;
-    mutable std::mutex warningsMutex_;
-    mutable std::unordered_set<std::string> warnings_;
-    mutable size_t moreWarnings_ = 0;
     uint64_t digest_ = 0;
     uint64_t byteCount_ = 0;
 };

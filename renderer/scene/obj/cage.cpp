@@ -117,17 +117,18 @@ bool hasTags(const std::vector<tinyobj::shape_t>& shapes) {
     });
 }
 
-void warnOfOtherTags(const std::vector<tinyobj::shape_t>& shapes, const std::string& where, MessageLog& log) {
+void warnOfOtherTags(const std::vector<tinyobj::shape_t>& shapes, FileWarnings& warnings) {
     std::set<std::string> names;
     SubdivisionCage none;
     for (const tinyobj::shape_t& shape : shapes)
         for (const tinyobj::tag_t& tag : shape.mesh.tags)
             if (!applyTag(tag, none) && names.insert(tag.name).second)
-                log.warning(fmt::format("{}: the subdivision tag \"{}\" is not known and left out", where, tag.name));
+                warnings.warn(fmt::format("the subdivision tag \"{}\" is not known and left out", tag.name));
 }
 
 SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<tinyobj::shape_t>& shapes,
-                       uint32_t fallbackMaterial, const std::string& where, MessageLog& log) {
+                       uint32_t fallbackMaterial, FileWarnings& warnings) {
+    const std::string& where = warnings.file();
     SubdivisionCage cage;
     cage.name = where;
     cage.boundary = SubdivisionCage::Boundary::EdgeOnly;
@@ -137,7 +138,7 @@ SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<ti
         addFaces(shape.mesh, fallbackMaterial, where, cage);
         for (const tinyobj::tag_t& tag : shape.mesh.tags) applyTag(tag, cage);
     }
-    warnOfOtherTags(shapes, where, log);
+    warnOfOtherTags(shapes, warnings);
     if (cage.faceSizes.empty()) throwBadInput({"holds no faces", where, "a polygon cage", ""});
     cage.material = cage.faceMaterials.front();
     if (std::count(cage.faceMaterials.begin(), cage.faceMaterials.end(), cage.material) ==
@@ -151,7 +152,8 @@ SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<ti
 }
 
 SubdivisionCage parseCage(std::string text, const std::string& where, MessageLog& log) {
-    checkObjNumbers(text, where, log);
+    FileWarnings warnings(where, log);
+    checkObjNumbers(text, warnings);
     uncommentTags(text);
     tinyobj::ObjReaderConfig config;
     config.triangulate = false;
@@ -159,7 +161,9 @@ SubdivisionCage parseCage(std::string text, const std::string& where, MessageLog
     tinyobj::ObjReader reader;
     if (!reader.ParseFromString(text, "", config))
         throwBadInput({"is not a readable OBJ file", where, "", reader.Error().substr(0, reader.Error().find('\n'))});
-    return cageOf(reader.GetAttrib(), reader.GetShapes(), 0, where, log);
+    SubdivisionCage cage = cageOf(reader.GetAttrib(), reader.GetShapes(), 0, warnings);
+    warnings.tellOfMore();
+    return cage;
 }
 
 }  // namespace lumi

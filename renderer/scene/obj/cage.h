@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/messages.h"
+#include "scene/file_warnings.h"
 #include "scene/subdivision.h"
 
 namespace lumi {
@@ -16,14 +16,14 @@ void uncommentTags(std::string& objText);
 bool hasTags(const std::vector<tinyobj::shape_t>& shapes);
 
 /// Warns, once for each name, of tags that nothing is made of.
-void warnOfOtherTags(const std::vector<tinyobj::shape_t>& shapes, const std::string& where, MessageLog& log);
+void warnOfOtherTags(const std::vector<tinyobj::shape_t>& shapes, FileWarnings& warnings);
 
 /// All shapes of an OBJ as one subdivision cage: faces as they are, with OpenSubdiv's `t` tag lines (crease, corner,
 /// hole, interpolateboundary, facevaryinginterpolateboundary, creasemethod, smoothtriangles). Other tags are warnings;
 /// so are hierarchical edits, which are left out. Texture coordinates as in our meshes, v from the top. Materials by
-/// tinyobj's numbers; faces without one get `fallbackMaterial`. Throws Error(BadInput) headed by `where`.
+/// tinyobj's numbers; faces without one get `fallbackMaterial`. Throws Error(BadInput) headed by the file.
 SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<tinyobj::shape_t>& shapes,
-                       uint32_t fallbackMaterial, const std::string& where, MessageLog& log);
+                       uint32_t fallbackMaterial, FileWarnings& warnings);
 
 /// The same from text, without materials.
 SubdivisionCage parseCage(std::string objText, const std::string& where, MessageLog& log);

@@ -24,14 +24,14 @@ constexpr uint64_t kBytesPerByte = 24;
 /// Finds .mtl files in the .obj's folder only.
 class FolderMaterials final : public tinyobj::MaterialReader {
 public:
-    FolderMaterials(std::filesystem::path folder, MessageLog& log, std::string where, uint64_t& digest)
-        : folder_(std::move(folder)), log_(log), where_(std::move(where)), digest_(digest) {}
+    FolderMaterials(std::filesystem::path folder, FileWarnings& warnings, uint64_t& digest)
+        : folder_(std::move(folder)), warnings_(warnings), digest_(digest) {}
 
     bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                     std::map<std::string, int>* byName, std::string*, std::string*) override {
         const std::optional<std::filesystem::path> file = pathInside(folder_, name);
         if (!file) {
-            log_.warning(where_ + ": the material file \"" + name + "\" leads out of the .obj's folder");
+            warnings_.warn("the material file \"" + name + "\" leads out of the .obj's folder");
             return true;
         }
         try {
@@ -41,15 +41,14 @@ public:
             std::string warning, error;
             tinyobj::LoadMtl(byName, materials, &text, &warning, &error);
         } catch (const Error& e) {
-            log_.warning(where_ + ": " + e.what() + "; its materials are left out");
+            warnings_.warn(std::string(e.what()) + "; its materials are left out");
         }
         return true;
     }
 
 private:
     std::filesystem::path folder_;
-    MessageLog& log_;
-    std::string where_;
+    FileWarnings& warnings_;
     uint64_t& digest_;
 };
 
@@ -60,18 +59,18 @@ struct ParsedObj {
     uint64_t digest = 0;
 };
 
-ParsedObj parse(const std::filesystem::path& path, MessageLog& log) {
-    const std::string where = path.filename().string();
+ParsedObj parse(const std::filesystem::path& path, FileWarnings& warnings) {
+    const std::string& where = warnings.file();
     std::vector<uint8_t> bytes = readFile(path, kMaxObjBytes);
     checkMemory("reading " + where, bytes.size() * kBytesPerByte);
     ParsedObj parsed;
     parsed.digest = digest64(bytes);
-    checkObjNumbers({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, where, log);
+    checkObjNumbers({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, warnings);
     std::string lines(bytes.begin(), bytes.end());
     bytes = {};
     uncommentTags(lines);
     std::istringstream text(std::move(lines));
-    FolderMaterials materials(path.parent_path(), log, where, parsed.digest);
+    FolderMaterials materials(path.parent_path(), warnings, parsed.digest);
     std::string warning, error;
     try {
         const bool good = tinyobj::LoadObj(&parsed.attributes, &parsed.shapes, &parsed.materials, &warning, &error,
@@ -81,44 +80,45 @@ ParsedObj parse(const std::filesystem::path& path, MessageLog& log) {
     } catch (const std::bad_alloc&) {
         throw Error(ErrorKind::Resources, {.what = "not enough memory to read the file", .where = where});
     }
-    std::istringstream warnings(warning);
-    for (std::string line; std::getline(warnings, line);)
-        if (!line.empty()) log.warning(where + ": " + line);
+    std::istringstream told(warning);
+    for (std::string line; std::getline(told, line);)
+        if (!line.empty()) warnings.warn(line);
     const auto isMore = [](const tinyobj::shape_t& shape) {
         return !shape.lines.indices.empty() || !shape.points.indices.empty();
     };
     if (std::any_of(parsed.shapes.begin(), parsed.shapes.end(), isMore))
-        log.warning(where + ": lines and points are not drawn");
+        warnings.warn("lines and points are not drawn");
     return parsed;
 }
 
 /// All shapes as the limit surface of one cage, if that is asked for. Nothing where only the file's own tags ask for it
 /// and there is no limit surface.
 std::shared_ptr<Mesh> limitSurface(const ParsedObj& parsed, const Subdivision& subdivision, uint32_t fallback,
-                                   const std::string& where, MessageLog& log, const std::stop_token& stop) {
+                                   FileWarnings& warnings, const std::stop_token& stop) {
     const bool asked = subdivision.scheme == SubdivisionScheme::CatmullClark;
     if (!asked && (subdivision.scheme == SubdivisionScheme::None || !hasTags(parsed.shapes))) {
-        if (subdivision.scheme != SubdivisionScheme::None) warnOfOtherTags(parsed.shapes, where, log);
+        if (subdivision.scheme != SubdivisionScheme::None) warnOfOtherTags(parsed.shapes, warnings);
         return nullptr;
     }
     try {
-        const SubdivisionCage cage = cageOf(parsed.attributes, parsed.shapes, fallback, where, log);
-        auto mesh = std::make_shared<Mesh>(tessellate(cage, subdivision.rate, where, stop).mesh);
+        const SubdivisionCage cage = cageOf(parsed.attributes, parsed.shapes, fallback, warnings);
+        auto mesh = std::make_shared<Mesh>(tessellate(cage, subdivision.rate, warnings.file(), stop).mesh);
         mesh->name = "surface";
         return mesh;
     } catch (const Error& error) {
         if (asked || error.kind() != ErrorKind::BadInput) throw;
-        log.warning(std::string(error.what()) + "; its polygons are shown as they are");
+        warnings.warnWhole(std::string(error.what()) + "; its polygons are shown as they are");
         return nullptr;
     }
 }
 
 /// The shapes as meshes, or the one that they are the cage of.
 std::vector<std::shared_ptr<Mesh>> buildMeshes(const ParsedObj& parsed, const std::vector<Material>& materials,
-                                               const Subdivision& subdivision, const std::string& where,
-                                               MessageLog& log, const std::stop_token& stop) {
+                                               const Subdivision& subdivision, FileWarnings& warnings,
+                                               const std::stop_token& stop) {
+    const std::string& where = warnings.file();
     const uint32_t fallback = static_cast<uint32_t>(materials.size() - 1);
-    std::vector<std::shared_ptr<Mesh>> meshes{limitSurface(parsed, subdivision, fallback, where, log, stop)};
+    std::vector<std::shared_ptr<Mesh>> meshes{limitSurface(parsed, subdivision, fallback, warnings, stop)};
     const bool subdivided = meshes.front() != nullptr;
     if (!subdivided) meshes.resize(parsed.shapes.size());
     parallelFor(
@@ -141,29 +141,30 @@ std::vector<std::shared_ptr<Mesh>> buildMeshes(const ParsedObj& parsed, const st
 }  // namespace
 
 Scene loadObj(const std::filesystem::path& path, MessageLog& log, const LoadOptions& options) {
-    const std::string where = path.filename().string();
+    FileWarnings warnings(path.filename().string(), log);
+    const std::string& where = warnings.file();
     const auto step = [&](float fraction, const char* what) {
         if (options.stop.stop_requested())
             throw Error(ErrorKind::Interrupted, {.what = "loading was stopped", .where = where});
         if (options.progress) options.progress(fraction, what);
     };
     step(0, "Reading geometry");
-    const ParsedObj parsed = parse(path, log);
+    const ParsedObj parsed = parse(path, warnings);
     const auto hasFaces = [](const tinyobj::shape_t& shape) { return !shape.mesh.num_face_vertices.empty(); };
     if (std::none_of(parsed.shapes.begin(), parsed.shapes.end(), hasFaces))
         throwBadInput({.what = "holds no faces", .where = where, .expected = "an OBJ with polygons"});
     step(0.4f, "Decoding textures");
-    ObjImages images(path.parent_path(), log);
+    ObjImages images(path.parent_path(), warnings);
     Scene scene;
     scene.title = path.stem().string();
     scene.path = path.string();
-    warnOfOtherTextures(parsed.materials, where, log);
+    warnOfOtherTextures(parsed.materials, warnings);
     scene.materials = convertMaterials(parsed.materials, images, options.stop);
 
     step(0.7f, "Building meshes");
     const uint32_t fallback = static_cast<uint32_t>(scene.materials.size() - 1);
     const std::vector<std::shared_ptr<Mesh>> meshes =
-        buildMeshes(parsed, scene.materials, options.subdivision, where, log, options.stop);
+        buildMeshes(parsed, scene.materials, options.subdivision, warnings, options.stop);
     step(0.9f, "Placing objects");
     bool usesFallback = false;
     for (size_t i = 0; i < meshes.size(); ++i) {
@@ -183,6 +184,7 @@ Scene loadObj(const std::filesystem::path& path, MessageLog& log, const LoadOpti
     if (!usesFallback && fallback > 0) scene.materials.pop_back();
     const uint64_t parts[2] = {parsed.digest, images.digest()};
     scene.contentDigest = digest({reinterpret_cast<const uint8_t*>(parts), sizeof(parts)});
+    warnings.tellOfMore();
     step(1, "Loaded");
     return scene;
 }

@@ -54,7 +54,8 @@ std::string_view faultOf(std::string_view line, int least) {
 
 }  // namespace
 
-void checkObjNumbers(std::string_view text, const std::string& where, MessageLog& log) {
+void checkObjNumbers(std::string_view text, FileWarnings& warnings) {
+    const std::string& where = warnings.file();
     size_t lineNumber = 0, faults = 0, first = 0;
     for (size_t at = 0; at < text.size();) {
         const size_t end = std::min(text.find('\n', at), text.size());
@@ -81,8 +82,8 @@ void checkObjNumbers(std::string_view text, const std::string& where, MessageLog
         }
     }
     if (faults > 0)
-        log.warning(where + ":" + std::to_string(first) + ": not finite numbers, read as 0" +
-                    (faults > 1 ? ", as on " + std::to_string(faults - 1) + " more lines" : std::string()));
+        warnings.warnWhole(where + ":" + std::to_string(first) + ": not finite numbers, read as 0" +
+                           (faults > 1 ? ", as on " + std::to_string(faults - 1) + " more lines" : std::string()));
 }
 
 }  // namespace lumi

@@ -1,13 +1,13 @@
 #pragma once
 #include <string_view>
 
-#include "base/messages.h"
+#include "scene/file_warnings.h"
 
 namespace lumi {
 
 /// Looks at every `v`, `vt` and `vn` line of an OBJ file's text, since tinyobj reads what is no number as 0. Throws
-/// Error(BadInput) headed by `where` and the line for a position with fewer than three numbers or with something that
+/// Error(BadInput) headed by the file and the line for a position with fewer than three numbers or with something that
 /// is no finite number; texture coordinates and normals like that are one warning, and read as 0.
-void checkObjNumbers(std::string_view text, const std::string& where, MessageLog& log);
+void checkObjNumbers(std::string_view text, FileWarnings& warnings);
 
 }  // namespace lumi

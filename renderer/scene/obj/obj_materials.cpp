@@ -115,7 +115,7 @@ std::vector<Material> convertMaterials(const std::vector<tinyobj::material_t>& s
     return materials;
 }
 
-void warnOfOtherTextures(const std::vector<tinyobj::material_t>& sources, const std::string& where, MessageLog& log) {
+void warnOfOtherTextures(const std::vector<tinyobj::material_t>& sources, FileWarnings& warnings) {
     using Name = std::string tinyobj::material_t::*;
     constexpr std::pair<Name, const char*> kLeftOut[] = {{&tinyobj::material_t::specular_texname, "map_Ks"},
                                                          {&tinyobj::material_t::specular_highlight_texname, "map_Ns"},
@@ -126,7 +126,7 @@ void warnOfOtherTextures(const std::vector<tinyobj::material_t>& sources, const 
         const auto isNamed = [&, member = name](const tinyobj::material_t& m) { return !(m.*member).empty(); };
         const auto first = std::find_if(sources.begin(), sources.end(), isNamed);
         if (first != sources.end())
-            log.warning(where + ": textures of " + keyword + " are left out, as that of \"" + first->name + '"');
+            warnings.warn(std::string("textures of ") + keyword + " are left out, as that of \"" + first->name + '"');
     }
 }
 

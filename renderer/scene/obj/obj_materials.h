@@ -13,6 +13,6 @@ std::vector<Material> convertMaterials(const std::vector<tinyobj::material_t>& s
                                        std::stop_token stop);
 
 /// Warns, once for each kind, of textures that no material is made of. Not of map_Ka: there is no ambient light.
-void warnOfOtherTextures(const std::vector<tinyobj::material_t>& sources, const std::string& where, MessageLog& log);
+void warnOfOtherTextures(const std::vector<tinyobj::material_t>& sources, FileWarnings& warnings);
 
 }  // namespace lumi

@@ -63,7 +63,7 @@ void ObjImages::loadFile(const std::string& name, File& file) const {
         file.image = decodeImage8(bytes, name);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::BadInput) throw;
-        log_.warning(std::string(error.what()) + "; the material is shown without it");
+        warnings_.warnWhole(std::string(error.what()) + "; the material is shown without it");
     }
 }
 

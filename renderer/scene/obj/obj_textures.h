@@ -6,6 +6,7 @@
 #include <string>
 
 #include "image/image.h"
+#include "scene/file_warnings.h"
 #include "scene/load.h"
 #include "scene/texture.h"
 
@@ -15,7 +16,7 @@ namespace lumi {
 /// together from them, since .mtl keeps in separate files what our textures keep in one.
 class ObjImages {
 public:
-    ObjImages(std::filesystem::path folder, MessageLog& log) : folder_(std::move(folder)), log_(log) {}
+    ObjImages(std::filesystem::path folder, FileWarnings& warnings) : folder_(std::move(folder)), warnings_(warnings) {}
 
     /// Names a file that will be needed; empty names are ignored.
     void request(const std::string& name);
@@ -43,7 +44,7 @@ private:
     void loadFile(const std::string& name, File& file) const;
 
     std::filesystem::path folder_;
-    MessageLog& log_;
+    FileWarnings& warnings_;
     std::map<std::string, File> files_;
 };
 

@@ -153,6 +153,15 @@ TEST(Obj, MissingFilesAreWarnings) {
     EXPECT_FALSE(scene.materials[0].baseColorTexture);
 }
 
+TEST(Obj, OfManyFaultsTheFirstAreListed) {
+    std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
+    for (int i = 0; i < 1000; ++i) text += "mtllib none" + std::to_string(i) + ".mtl\n";
+    MessageLog log;
+    EXPECT_EQ(loadText(text + "f 1 2 3\n", log).triangleCount(), 1);
+    ASSERT_EQ(log.warnings().size(), 201u);
+    EXPECT_EQ(log.warnings().back(), "a.obj: and 800 more faults");
+}
+
 TEST(Obj, WhatIsLeftOutIsSaidOnce) {
     MessageLog log;
     loadText("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl m\nf 1 2 3\nl 1 2\np 1\nl 2 3\n", log,
