@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <cstring>
 
-#include "app/options/option_text.h"
 #include "base/error.h"
 #include "base/isa.h"
 #include "base/memory.h"
@@ -48,26 +47,11 @@ void applyMachine(const MachineOptions& machine) {
     if (!machine.memoryLimit.empty()) setMemoryLimit(parseBytes(machine.memoryLimit, "--memory-limit"));
 }
 
-bool readChoice(const TypedValue& value, SceneChoice& choice) {
-    if (value.id == "scene.variant") {
-        choice.variant = value.text;
-    } else if (value.id == "scene.animation") {
-        choice.animation = value.text;
-    } else if (value.id == "scene.index") {
-        const int64_t index = parseWhole(value.text, value.option, "scene.index as a whole number", -1);
-        if (index > 9999) throwUsage({"\"scene.index\" is out of range", value.option, "-1 to 9999", value.text});
-        choice.index = static_cast<int>(index);
-    } else {
-        return false;
-    }
-    return true;
-}
-
 std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const SceneOptions& options, MessageLog& log,
                                        std::stop_token stop) {
     LoadOptions load;
     load.stop = stop;
-    for (const TypedValue& value : options.values) readChoice(value, load.choice);
+    for (const TypedValue& value : options.values) load.choice.set(value.id, value.text, value.option);
     return loadScene(file, log, load);
 }
 

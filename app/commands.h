@@ -30,9 +30,6 @@ void applyMachine(const MachineOptions& machine);
 /// this is for those that loaded.
 void printMessages(MessageLog& log, const MachineOptions& machine);
 
-/// Takes a `scene.` value into `choice`; false: it is no such value. Throws Error(Usage).
-bool readChoice(const TypedValue& value, SceneChoice& choice);
-
 /// The scene that the options name, with the `scene.` values among theirs.
 std::shared_ptr<const Scene> openScene(const std::filesystem::path& file, const SceneOptions& options, MessageLog& log,
                                        std::stop_token stop);

@@ -20,7 +20,7 @@ StartOptions startOptions(const SceneOptions& options) {
     start.scene = findScene(options.scene.empty() ? "atrium" : options.scene);
     for (const std::string& module : options.modules) findModule(module, "--module");
     for (const TypedValue& value : options.values)
-        if (!readChoice(value, start.choice)) start.set.push_back(value);
+        if (!start.choice.set(value.id, value.text, value.option)) start.set.push_back(value);
     start.modules = options.modules;
     return start;
 }

@@ -71,8 +71,7 @@ public:
         const fs::path file = sceneOf(replay);
         LoadOptions load;
         load.stop = stop_;
-        load.choice = {replay.start.value("scene.index", -1), replay.start.value("scene.variant", ""),
-                       replay.start.value("scene.animation", "")};
+        load.choice = replay.choice;
         auto scene = loadScene(file, log_, load);
         if (scene->contentDigest != replay.scene.digest)
             throwBadInput({"the scene changed since the image was made", file.string(),

@@ -158,23 +158,8 @@ void DocumentFields::readSky(Document& document, Environment& sky, const std::st
 void DocumentFields::addScene(const Document& document, const std::string& filter, std::vector<Group>& groups) {
     if (concerns("scene.", filter)) {
         auto copy = std::make_shared<SceneChoice>(document.sceneChoice_);
-        groups.push_back(
-            {"scene.",
-             [copy](ParameterVisitor& v) {
-                 v.integer("scene.index", copy->index,
-                           {.label = "Scene",
-                            .min = -1,
-                            .max = 9999,
-                            .help = "Which scene of a glTF file is loaded; -1 is the file's default",
-                            .redo = Redo::Build});
-                 v.text("scene.variant", copy->variant,
-                        {.label = "Variant", .help = "Material variant by name; empty is the file's default"});
-                 v.text("scene.animation", copy->animation,
-                        {.label = "Animation",
-                         .help = "Which of a glTF file's animations plays, by name or number; empty plays each that "
-                                 "moves nothing that an earlier one moves"});
-             },
-             [copy](Document& d, const auto&, const auto&, const auto&) { d.sceneChoice_ = *copy; }});
+        groups.push_back({"scene.", [copy](ParameterVisitor& v) { copy->describe(v); },
+                          [copy](Document& d, const auto&, const auto&, const auto&) { d.sceneChoice_ = *copy; }});
     }
     if (concerns("environment.", filter)) {
         auto copy = std::make_shared<Environment>(document.edited_->environment);

@@ -6,6 +6,7 @@
 #include "base/files.h"
 #include "image/exr.h"
 #include "image/png.h"
+#include "params/json.h"
 
 namespace lumi {
 using nlohmann::json;
@@ -53,6 +54,20 @@ void addFrames(Replay& replay, const json& entry, const std::string& where) {
     replay.ticks.push_back(ticks);
 }
 
+/// The `scene.` values among those of a document.
+SceneChoice choiceOf(const json& values, const std::string& where) {
+    SceneChoice choice;
+    const auto parameters = [&](ParameterVisitor& visitor) { choice.describe(visitor); };
+    try {
+        for (const ParameterInfo& info : listParameters(parameters))
+            if (values.contains(info.id))
+                setParameter(parameters, info.id, parameterFromJson(info, values.at(info.id), where), where);
+    } catch (const Error& error) {
+        throw Error(ErrorKind::BadInput, error.text());
+    }
+    return choice;
+}
+
 }  // namespace
 
 std::optional<json> Replay::valuesOf(FrameNumber frame) const {
@@ -84,9 +99,7 @@ Replay parseReplay(const std::string& text, const std::string& where) {
     const json& start = member(state, "start", json::value_t::object, where);
     replay.first = member(start, "frame", json::value_t::number_integer, where).get<FrameNumber>();
     replay.start = member(start, "set", json::value_t::object, where);
-    if (replay.start.contains("scene.index")) member(replay.start, "scene.index", json::value_t::number_integer, where);
-    for (const char* id : {"scene.variant", "scene.animation"})
-        if (replay.start.contains(id)) member(replay.start, id, json::value_t::string, where);
+    replay.choice = choiceOf(replay.start, where);
     replay.last = member(state, "frame", json::value_t::number_integer, where).get<FrameNumber>();
     for (const json& entry : member(state, "frames", json::value_t::array, where)) addFrames(replay, entry, where);
     const auto& sets = replay.sets;

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "scene/scene_choice.h"
 #include "session/state_log.h"
 
 namespace lumi {
@@ -16,6 +17,7 @@ struct Replay {
     SceneReference scene;
     std::string isa;
     FrameNumber first = 0, last = 0;
+    SceneChoice choice;                                        ///< among `start`
     nlohmann::json start;                                      ///< values before frame `first`, which is a cut
     std::vector<std::pair<FrameNumber, nlohmann::json>> sets;  ///< ascending, after `first`
     std::vector<Ticks> ticks;                                  ///< ascending, after `first`

@@ -94,11 +94,7 @@ private:
             const StudyScene& wanted = study_.scenes[job.scene];
             LoadOptions load;
             load.stop = options_.stop;
-            for (const StudyValue& value : wanted.set) {
-                if (value.id == "scene.variant") load.choice.variant = value.text;
-                if (value.id == "scene.animation") load.choice.animation = value.text;
-                if (value.id == "scene.index") load.choice.index = std::atoi(value.text.c_str());
-            }
+            for (const StudyValue& value : wanted.set) load.choice.set(value.id, value.text, value.where);
             report("loading " + wanted.name);
             scene_ = loadScene(findStudyScene(study_, wanted), log_, load);
             sceneIndex_ = job.scene;

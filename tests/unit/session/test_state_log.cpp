@@ -232,6 +232,9 @@ TEST(ReadReplay, RefusesWhatIsNoState) {
     refuse(R"({"format": "lumiscope-state", "version": 1, "scene": {"name": "a", "digest": "b"}, "isa": "v3",
                "start": {"frame": 0, "set": {"scene.index": "one"}}, "frame": 2, "frames": []})",
            "\"scene.index\"");
+    refuse(R"({"format": "lumiscope-state", "version": 1, "scene": {"name": "a", "digest": "b"}, "isa": "v3",
+               "start": {"frame": 0, "set": {"scene.index": 10000}}, "frame": 2, "frames": []})",
+           "-1 to 9999");
     const std::string head =
         R"({"format": "lumiscope-state", "version": 1, "scene": {"name": "a", "digest": "b"}, "isa": "v3",
         "start": {"frame": 0, "set": {}}, "frame": 9, "frames": [)";
