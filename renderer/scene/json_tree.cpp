@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/memory.h"
 
 namespace lumi {
 namespace {
@@ -76,6 +77,7 @@ public:
     bool EndArray(rapidjson::SizeType) { return close(); }
 
     bool Key(const char* chars, rapidjson::SizeType length, bool) {
+        makeRoom(open_.back()->members);
         open_.back()->members.push_back({std::string(chars, length), positions_.at(openingQuote()), {}});
         return true;
     }
@@ -144,7 +146,17 @@ private:
     JsonValue& place() {
         if (open_.empty()) return tree_.root;
         JsonValue& parent = *open_.back();
-        return parent.isArray() ? parent.items.emplace_back() : parent.members.back().value;
+        if (!parent.isArray()) return parent.members.back().value;
+        makeRoom(parent.items);
+        return parent.items.emplace_back();
+    }
+    /// For one more; the tree takes many times the bytes of its text.
+    template <class Things>
+    void makeRoom(Things& things) const {
+        if (things.size() < things.capacity()) return;
+        const size_t room = std::max<size_t>(2 * things.size(), 1);
+        checkMemory("the JSON of " + tree_.file, room * sizeof(things[0]));
+        things.reserve(room);
     }
 
     std::string_view text_;

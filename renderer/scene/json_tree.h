@@ -45,7 +45,7 @@ struct JsonTree {
     std::string where(const TextPosition& at) const;
 };
 
-/// Throws Error(BadInput) headed by file:line:column.
+/// Throws Error(BadInput) headed by file:line:column, Error(Resources) where the tree would pass the memory limit.
 JsonTree parseJsonTree(const std::string& text, const std::string& file);
 
 }  // namespace lumi

@@ -117,6 +117,7 @@ void Document::parse(std::span<const uint8_t> file) {
         if (buffer.external) externalBufferLengths_.push_back(buffer.byteLength);
         bytes += buffer.hasUri ? 0 : std::min<uint64_t>(buffer.byteLength, file.size());
     }
+    checkMemory("the JSON of " + name_, summary.treeBytes);
     checkMemory("the buffers of " + name_, bytes);
 
     tinygltf::TinyGLTF reader;

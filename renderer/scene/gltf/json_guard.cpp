@@ -16,6 +16,20 @@ using Json = nlohmann::json;
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
 constexpr const char* kMeshopt = "EXT_meshopt_compression";
 
+/// Bytes of a value in the parser's tree (twice: its arrays grow by doubling), of an object's or array's body, and of
+/// a member's key in an object's tree of keys, each with what the allocator adds.
+constexpr uint64_t kValueBytes = 2 * sizeof(Json), kBodyBytes = 64, kMemberBytes = 96;
+
+/// Bytes of an entry of a top-level array in tinygltf's model.
+uint64_t entryBytes(std::string_view section) {
+    if (section == "accessors") return sizeof(tinygltf::Accessor);
+    if (section == "bufferViews") return sizeof(tinygltf::BufferView);
+    if (section == "images") return sizeof(tinygltf::Image);
+    if (section == "materials") return sizeof(tinygltf::Material);
+    if (section == "meshes") return sizeof(tinygltf::Mesh);
+    return sizeof(tinygltf::Node);
+}
+
 /// The object's member if it is there and has such members of its own, else null.
 Json* objectIn(Json& object, const char* name) {
     if (!object.is_object()) return nullptr;
@@ -61,18 +75,18 @@ public:
     Guard(std::string_view json, const std::string& where) : json_(json), where_(where) {}
     JsonSummary summary;
 
-    bool null() override { return true; }
+    bool null() override { return count(); }
     bool boolean(bool value) override {
         if (section_ == "buffers" && depth_ == 5 && key_ == "fallback" && !summary.buffers.empty())
             summary.buffers.back().isFallback = value;
-        return true;
+        return count();
     }
-    bool number_integer(number_integer_t) override { return true; }
+    bool number_integer(number_integer_t) override { return count(); }
     bool number_unsigned(number_unsigned_t value) override {
         if (inBuffer() && key_ == "byteLength") summary.buffers.back().byteLength = value;
-        return true;
+        return count();
     }
-    bool number_float(number_float_t, const string_t&) override { return true; }
+    bool number_float(number_float_t, const string_t&) override { return count(); }
     bool string(string_t& value) override {
         if (depth_ == 2 && section_ == "extensionsRequired") summary.requiredExtensions.push_back(value);
         summary.hasOtherData |=
@@ -81,11 +95,12 @@ public:
             summary.buffers.back().hasUri = !value.empty();
             summary.buffers.back().external = !value.empty() && !value.starts_with("data:");
         }
-        return true;
+        return count(kBodyBytes + value.size());
     }
     bool binary(binary_t&) override { return true; }
     bool start_object(std::size_t) override {
         enter();
+        if (depth_ == 3) summary.treeBytes += 2 * entryBytes(section_);
         if (depth_ == 3 && section_ == "buffers") summary.buffers.emplace_back();
         return true;
     }
@@ -98,7 +113,10 @@ public:
     bool key(string_t& value) override {
         if (depth_ == 1) section_ = value;
         summary.hasDraco |= section_ == "meshes" && value == kDraco;
+        if (freeDepth_ == 0 || depth_ == freeDepth_)
+            freeDepth_ = value == "extras" || value == "extensions" ? depth_ : 0;
         key_ = value;
+        summary.treeBytes += kMemberBytes;
         return true;
     }
     bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
@@ -113,21 +131,28 @@ public:
     }
 
 private:
+    bool count(uint64_t beyondValue = 0) {
+        // What has no fixed form is kept as a tree of tinygltf's own, too.
+        summary.treeBytes += kValueBytes + beyondValue + (freeDepth_ > 0 ? 2 * sizeof(tinygltf::Value) : 0);
+        return true;
+    }
     bool inBuffer() const { return depth_ == 3 && section_ == "buffers" && !summary.buffers.empty(); }
     void enter() {
         if (++depth_ > kMaxJsonDepth)
             throwBadInput({.what = "the JSON is nested too deeply",
                            .where = where_,
                            .expected = "at most " + std::to_string(kMaxJsonDepth) + " levels"});
+        count(kBodyBytes);
     }
     bool leave() {
-        --depth_;
+        if (--depth_ < freeDepth_) freeDepth_ = 0;
         return true;
     }
 
     std::string_view json_;
     const std::string& where_;
     int depth_ = 0;
+    int freeDepth_ = 0;  ///< that of the "extras" or "extensions" being read, else 0
     std::string section_, key_;
 };
 

@@ -18,6 +18,7 @@ struct JsonSummary {
     bool hasDraco = false;                        ///< some primitive is under KHR_draco_mesh_compression
     bool hasOtherData = false;                    ///< a data URI whose kind tinygltf does not know, or that names none
     std::vector<std::string> requiredExtensions;  ///< "extensionsRequired"
+    uint64_t treeBytes = 0;                       ///< of the values as a tree in memory, about: many times the text
 };
 
 /// Deepest nesting that is accepted: tinygltf recurses, and overflows its stack on hostile files.

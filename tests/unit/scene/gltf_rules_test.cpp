@@ -247,5 +247,22 @@ TEST(GltfRules, SharedIndicesAreCountedBeforeTheyAreRead) {
     few.expectRefused({"the geometry of test.glb needs 30.5 MiB", "memory limit"}, ErrorKind::Resources);
 }
 
+/// The file with 100,000 such values beside its version.
+GltfBuilder& withExtras(GltfBuilder& file, const nlohmann::json& value) {
+    file.triangle().json["asset"]["extensions"] = nlohmann::json::object();
+    file.json["asset"]["extras"] = std::vector<nlohmann::json>(100000, value);
+    return file;
+}
+
+TEST(GltfRules, TheTreeOfTheJsonCountsAgainstTheMemoryLimit) {
+    GltfBuilder numbers, objects, strings, small;
+    EXPECT_EQ(withExtras(numbers, 1).load().triangleCount(), 1);
+    withExtras(objects, {{"a", 1}}), withExtras(strings, "text");
+    const test::MemoryLimit limit(uint64_t(4) << 20);
+    EXPECT_EQ(small.triangle().load().triangleCount(), 1);
+    for (const GltfBuilder* file : {&numbers, &objects, &strings})
+        file->expectRefused({"the JSON of test.glb needs ", "memory limit"}, ErrorKind::Resources);
+}
+
 }  // namespace
 }  // namespace lumi

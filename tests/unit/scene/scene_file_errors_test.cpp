@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "base/files.h"
+#include "support/expect_error.h"
+#include "support/memory_limit.h"
 #include "support/temporary_folder.h"
 
 // Every way in which a scene file can be wrong, with the exact text that a user reads.
@@ -188,6 +190,15 @@ TEST(SceneFileErrors, Textures) {
               "s.json:1:58: \"base-color-texture\": " + path + "/none.png: no such file");
     EXPECT_NE(refusal(head + "\"broken.png\"}}}", folder.path()).find("broken.png"), std::string::npos);
     EXPECT_EQ(refusal(head + "\".\"}}}", folder.path()).substr(0, 12), "s.json:1:58:");
+}
+
+TEST(SceneFileErrors, TheTreeOfTheJsonCountsAgainstTheMemoryLimit) {
+    std::string items;
+    for (int i = 0; i < 100000; ++i) items += i == 0 ? "1" : ",1";
+    const std::string text = "{\"version\": 1, \"title\": [" + items + "]}";
+    EXPECT_EQ(refusal(text), "s.json:1:25: \"title\" is an array of 100000; expected text in quotes");
+    const MemoryLimit limit(uint64_t(1) << 20);
+    expectError(ErrorKind::Resources, [&] { parseScene(text); }, {"the JSON of s.json needs ", "memory limit"});
 }
 
 }  // namespace
