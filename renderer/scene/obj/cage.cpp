@@ -13,57 +13,74 @@
 namespace lumi {
 namespace {
 
-void addCreases(const tinyobj::tag_t& tag, SubdivisionCage& cage) {
-    for (size_t i = 0; i + 1 < tag.intValues.size(); ++i) {
-        const float sharpness = tag.floatValues.empty()
-                                    ? 10.0f
-                                    : static_cast<float>(tag.floatValues[std::min(i, tag.floatValues.size() - 1)]);
-        cage.creases.push_back(
-            {static_cast<uint32_t>(tag.intValues[i]), static_cast<uint32_t>(tag.intValues[i + 1]), sharpness});
-    }
+using Tag = tinyobj::tag_t;
+
+/// Of the tag's i-th thing: the last float stands for all that follow, and infinitely sharp for none.
+float sharpnessAt(const Tag& tag, size_t i) {
+    if (tag.floatValues.empty()) return 10;
+    return static_cast<float>(tag.floatValues[std::min(i, tag.floatValues.size() - 1)]);
 }
 
-void addCorners(const tinyobj::tag_t& tag, SubdivisionCage& cage) {
-    for (size_t i = 0; i < tag.intValues.size(); ++i) {
-        const float sharpness = tag.floatValues.empty()
-                                    ? 10.0f
-                                    : static_cast<float>(tag.floatValues[std::min(i, tag.floatValues.size() - 1)]);
-        cage.corners.push_back({static_cast<uint32_t>(tag.intValues[i]), sharpness});
-    }
+int firstInt(const Tag& tag) { return tag.intValues.empty() ? 0 : tag.intValues[0]; }
+
+void addCreases(const Tag& tag, SubdivisionCage& cage) {
+    for (size_t i = 0; i + 1 < tag.intValues.size(); ++i)
+        cage.creases.push_back({static_cast<uint32_t>(tag.intValues[i]), static_cast<uint32_t>(tag.intValues[i + 1]),
+                                sharpnessAt(tag, i)});
 }
 
-int firstInt(const tinyobj::tag_t& tag) { return tag.intValues.empty() ? 0 : tag.intValues[0]; }
+void addCorners(const Tag& tag, SubdivisionCage& cage) {
+    for (size_t i = 0; i < tag.intValues.size(); ++i)
+        cage.corners.push_back({static_cast<uint32_t>(tag.intValues[i]), sharpnessAt(tag, i)});
+}
 
-/// False if there is no such tag.
-bool applyTag(const tinyobj::tag_t& tag, SubdivisionCage& cage) {
+void addHoles(const Tag& tag, SubdivisionCage& cage) {
+    for (const int face : tag.intValues) cage.holes.push_back(static_cast<uint32_t>(face));
+}
+
+void setBoundary(const Tag& tag, SubdivisionCage& cage) {
     using Boundary = SubdivisionCage::Boundary;
-    if (tag.name == "crease") addCreases(tag, cage);
-    else if (tag.name == "corner") addCorners(tag, cage);
-    else if (tag.name == "hole") {
-        if (!tag.intValues.empty()) cage.holes.push_back(static_cast<uint32_t>(tag.intValues[0]));
-    } else if (tag.name == "interpolateboundary") {
-        constexpr Boundary kRules[] = {Boundary::None, Boundary::EdgeAndCorner, Boundary::EdgeOnly};
-        const int rule = firstInt(tag);
-        if (rule >= 0 && rule < 3) cage.boundary = kRules[rule];
-    } else if (tag.name == "facevaryinginterpolateboundary") {
-        if (firstInt(tag) >= 0 && firstInt(tag) < 6)
-            cage.faceVarying = static_cast<SubdivisionCage::FaceVarying>(firstInt(tag));
-    } else if (tag.name == "creasemethod") {
-        cage.chaikin = !tag.stringValues.empty() && tag.stringValues[0] == "chaikin";
-    } else if (tag.name == "smoothtriangles") {
-        cage.smoothTriangles = firstInt(tag) != 0;
-    } else {
-        return false;
-    }
-    return true;
+    constexpr Boundary kRules[] = {Boundary::None, Boundary::EdgeAndCorner, Boundary::EdgeOnly};
+    if (const int rule = firstInt(tag); rule >= 0 && rule < 3) cage.boundary = kRules[rule];
 }
 
-/// Those that applyTag() knows, and hierarchical edits, which a cage alone has too.
-bool isTagName(std::string_view name) {
-    constexpr std::string_view kNames[] = {
-        "crease",     "corner",   "hole",     "interpolateboundary", "facevaryinginterpolateboundary", "creasemethod",
-        "vertexedit", "edgeedit", "faceedit", "smoothtriangles"};
-    return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
+void setFaceVarying(const Tag& tag, SubdivisionCage& cage) {
+    if (const int rule = firstInt(tag); rule >= 0 && rule < 6)
+        cage.faceVarying = static_cast<SubdivisionCage::FaceVarying>(rule);
+}
+
+void setCreaseMethod(const Tag& tag, SubdivisionCage& cage) {
+    cage.chaikin = !tag.stringValues.empty() && tag.stringValues[0] == "chaikin";
+}
+
+void setSmoothTriangles(const Tag& tag, SubdivisionCage& cage) { cage.smoothTriangles = firstInt(tag) != 0; }
+
+struct KnownTag {
+    std::string_view name;
+    void (*apply)(const Tag&, SubdivisionCage&);  ///< null: of a cage, but left out
+};
+
+constexpr KnownTag kKnownTags[] = {
+    {"crease", addCreases},
+    {"corner", addCorners},
+    {"hole", addHoles},
+    {"interpolateboundary", setBoundary},
+    {"facevaryinginterpolateboundary", setFaceVarying},
+    {"creasemethod", setCreaseMethod},
+    {"smoothtriangles", setSmoothTriangles},
+    {"vertexedit", nullptr},
+    {"edgeedit", nullptr},
+    {"faceedit", nullptr},
+};
+
+const KnownTag* knownTag(std::string_view name) {
+    const auto found = std::ranges::find(kKnownTags, name, &KnownTag::name);
+    return found != std::end(kKnownTags) ? found : nullptr;
+}
+
+bool isApplied(const Tag& tag) {
+    const KnownTag* known = knownTag(tag.name);
+    return known && known->apply;
 }
 
 /// "#t crease 2/1/0 ...", and no sentence of a comment: a tag's name and then how many numbers follow.
@@ -71,7 +88,7 @@ bool isCommentedTag(std::string_view line) {
     if (!line.starts_with("#t ")) return false;
     line.remove_prefix(3);
     const size_t end = line.find_first_of(" \t");
-    if (end == line.npos || !isTagName(line.substr(0, end))) return false;
+    if (end == line.npos || !knownTag(line.substr(0, end))) return false;
     line.remove_prefix(line.find_first_not_of(" \t", end) == line.npos ? line.size()
                                                                        : line.find_first_not_of(" \t", end));
     return !line.empty() && line[0] >= '0' && line[0] <= '9';
@@ -113,17 +130,16 @@ void uncommentTags(std::string& text) {
 bool hasTags(const std::vector<tinyobj::shape_t>& shapes) {
     return std::any_of(shapes.begin(), shapes.end(), [](const tinyobj::shape_t& shape) {
         return std::any_of(shape.mesh.tags.begin(), shape.mesh.tags.end(),
-                           [](const tinyobj::tag_t& tag) { return isTagName(tag.name); });
+                           [](const Tag& tag) { return knownTag(tag.name) != nullptr; });
     });
 }
 
 void warnOfOtherTags(const std::vector<tinyobj::shape_t>& shapes, FileWarnings& warnings) {
     std::set<std::string> names;
-    SubdivisionCage none;
     for (const tinyobj::shape_t& shape : shapes)
-        for (const tinyobj::tag_t& tag : shape.mesh.tags)
-            if (!applyTag(tag, none) && names.insert(tag.name).second)
-                warnings.warn(fmt::format("the subdivision tag \"{}\" is not known and left out", tag.name));
+        for (const Tag& tag : shape.mesh.tags)
+            if (!isApplied(tag) && names.insert(tag.name).second)
+                warnings.warn(fmt::format("the subdivision tag \"{}\" is not supported and left out", tag.name));
 }
 
 SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<tinyobj::shape_t>& shapes,
@@ -136,7 +152,8 @@ SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<ti
         cage.positions.emplace_back(attributes.vertices[i], attributes.vertices[i + 1], attributes.vertices[i + 2]);
     for (const tinyobj::shape_t& shape : shapes) {
         addFaces(shape.mesh, fallbackMaterial, where, cage);
-        for (const tinyobj::tag_t& tag : shape.mesh.tags) applyTag(tag, cage);
+        for (const Tag& tag : shape.mesh.tags)
+            if (isApplied(tag)) knownTag(tag.name)->apply(tag, cage);
     }
     warnOfOtherTags(shapes, warnings);
     if (cage.faceSizes.empty()) throwBadInput({"holds no faces", where, "a polygon cage", ""});

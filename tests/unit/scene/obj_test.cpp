@@ -256,6 +256,17 @@ TEST(ObjCage, CommentsAreNoTags) {
     EXPECT_GT(loadText(square + "#t interpolateboundary 1/0/0 1\n").triangleCount(), 2);
 }
 
+TEST(ObjCage, OneTagCutsSeveralHoles) {
+    const std::string strip =
+        "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 3 1 0\n"
+        "f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n#t interpolateboundary 1/0/0 1\n";
+    const int64_t whole = loadText(strip).triangleCount();
+    EXPECT_EQ(3 * loadText(strip + "#t hole 1/0/0 1\n").triangleCount(), 2 * whole);
+    const Scene middle = loadText(strip + "#t hole 2/0/0 0 2\n");
+    EXPECT_EQ(3 * middle.triangleCount(), whole);
+    EXPECT_NEAR(middle.restBounds().size().x, 1, 1e-5);
+}
+
 TEST(ObjCage, WithoutALimitSurfaceItsPolygonsAreShown) {
     MessageLog log;
     const Scene scene = loadText("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nt corner 1/1/0 77 10\n", log);
