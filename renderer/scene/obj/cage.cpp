@@ -53,7 +53,10 @@ void setCreaseMethod(const Tag& tag, SubdivisionCage& cage) {
     cage.chaikin = !tag.stringValues.empty() && tag.stringValues[0] == "chaikin";
 }
 
-void setSmoothTriangles(const Tag& tag, SubdivisionCage& cage) { cage.smoothTriangles = firstInt(tag) != 0; }
+/// A number, or OpenSubdiv's own words: "catmark", "smooth".
+void setSmoothTriangles(const Tag& tag, SubdivisionCage& cage) {
+    cage.smoothTriangles = tag.stringValues.empty() ? firstInt(tag) != 0 : tag.stringValues[0] == "smooth";
+}
 
 struct KnownTag {
     std::string_view name;

@@ -1,10 +1,12 @@
 #include "scene/obj/load_obj.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
 
 #include "base/files.h"
+#include "scene/obj/cage.h"
 #include "scene/obj/triangulate.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
@@ -254,6 +256,49 @@ TEST(ObjCage, CommentsAreNoTags) {
         EXPECT_TRUE(log.warnings().empty());
     }
     EXPECT_GT(loadText(square + "#t interpolateboundary 1/0/0 1\n").triangleCount(), 2);
+}
+
+SubdivisionCage cageWith(const std::string& tags) {
+    MessageLog log;
+    const SubdivisionCage cage =
+        parseCage("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 1 2 3 4\nf 1 5 2\nf 2 5 3\n" + tags, "a.obj", log);
+    EXPECT_TRUE(log.warnings().empty());
+    return cage;
+}
+
+TEST(ObjCage, ChainsTakeOneSharpnessOrOneAnEdge) {
+    for (const auto& [tag, second] :
+         {std::pair("#t crease 3/1/0 0 1 2 4.5\n", 4.5f), {"t crease 3/2/0 0 1 2 4.5 3\n", 3.0f}}) {
+        const SubdivisionCage cage = cageWith(tag);
+        ASSERT_EQ(cage.creases.size(), 2u) << tag;
+        EXPECT_EQ(cage.creases[0].a, 0u);
+        EXPECT_EQ(cage.creases[0].b, 1u);
+        EXPECT_EQ(cage.creases[0].sharpness, 4.5f);
+        EXPECT_EQ(cage.creases[1].a, 1u);
+        EXPECT_EQ(cage.creases[1].b, 2u);
+        EXPECT_EQ(cage.creases[1].sharpness, second);
+    }
+    const SubdivisionCage corner = cageWith("#t corner 1/1/0 4 2.5\n");
+    ASSERT_EQ(corner.corners.size(), 1u);
+    EXPECT_EQ(corner.corners[0].vertex, 4u);
+    EXPECT_EQ(corner.corners[0].sharpness, 2.5f);
+}
+
+TEST(ObjCage, RulesAreThoseOfTheirTags) {
+    using Boundary = SubdivisionCage::Boundary;
+    EXPECT_EQ(cageWith("").boundary, Boundary::EdgeOnly);
+    EXPECT_EQ(cageWith("#t interpolateboundary 1/0/0 0\n").boundary, Boundary::None);
+    EXPECT_EQ(cageWith("#t interpolateboundary 1/0/0 1\n").boundary, Boundary::EdgeAndCorner);
+    EXPECT_EQ(cageWith("#t interpolateboundary 1/0/0 2\n").boundary, Boundary::EdgeOnly);
+    for (int rule = 0; rule < 6; ++rule)
+        EXPECT_EQ(
+            static_cast<int>(cageWith(fmt::format("#t facevaryinginterpolateboundary 1/0/0 {}\n", rule)).faceVarying),
+            rule);
+    EXPECT_TRUE(cageWith("#t creasemethod 0/0/1 chaikin\n").chaikin);
+    EXPECT_FALSE(cageWith("#t creasemethod 0/0/1 normal\n").chaikin);
+    EXPECT_TRUE(cageWith("#t smoothtriangles 0/0/1 smooth\n").smoothTriangles);
+    EXPECT_FALSE(cageWith("#t smoothtriangles 0/0/1 catmark\n").smoothTriangles);
+    EXPECT_TRUE(cageWith("#t smoothtriangles 1/0/0 1\n").smoothTriangles);
 }
 
 TEST(ObjCage, OneTagCutsSeveralHoles) {
