@@ -52,6 +52,31 @@ bool strays(const Instance& instance, const PosedMoment& a, const PosedMoment& t
                     [&](size_t j) { return strays(jointsA[j], joints[j], jointsB[j], part, meshBounds); });
 }
 
+Mat4 frameOf(const Light& light, const PosedMoment& moment) {
+    return light.node < 0 ? Mat4(1) : moment.nodes.worldFromNode[static_cast<size_t>(light.node)];
+}
+
+/// The same for a light: its place, in a scene of this radius, and the axis along which it shines.
+bool strays(const Light& light, const PosedMoment& a, const PosedMoment& truth, const PosedMoment& b, float part,
+            float sceneRadius) {
+    const Mat4 from = frameOf(light, a), to = frameOf(light, b), there = frameOf(light, truth);
+    if (from == to && from == there) return false;
+    const Mat4 straight = between(from, to, part);
+    const auto axis = [](const Mat4& frame) { return glm::normalize(Vec3(frame[2]) + Vec3(1e-30f)); };
+    const float off = light.type == LightType::Directional ? 0 : glm::distance(Vec3(straight[3]), Vec3(there[3]));
+    const float turned = light.type == LightType::Point ? 0 : glm::distance(axis(straight), axis(there));
+    return off > kMostShutterStray * sceneRadius || turned > kMostShutterStray;
+}
+
+/// Of the scene at a moment: half the diagonal of its box; more than 0.
+float radiusOf(const Scene& scene, const PosedMoment& moment, std::span<const Bounds3> meshBounds) {
+    Bounds3 all;
+    for (size_t k = 0; k < scene.instances.size(); ++k)
+        if (!meshBounds[k].empty())
+            all.extend(transformedBounds(meshBounds[k], placementOf(scene.instances[k], moment)));
+    return all.empty() ? 1 : std::max(all.radius(), 1e-6f);
+}
+
 bool standsStill(const Instance& instance, std::span<const PosedMoment> moments) {
     const Mat4 first = placementOf(instance, moments[0]);
     const bool bends = deforms(instance);
@@ -115,10 +140,13 @@ std::vector<PosedMoment> shutterMoments(const Scene& scene, float open, float cl
         if (stop.stop_requested()) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
         return poseMoment(scene, glm::mix(open, close, part));
     };
+    float sceneRadius = 0;
     const auto anyStrays = [&](const PosedMoment& a, const PosedMoment& truth, const PosedMoment& b, float part) {
         for (size_t k = 0; k < scene.instances.size(); ++k)
             if (strays(scene.instances[k], a, truth, b, part, meshBounds[k])) return true;
-        return false;
+        if (sceneRadius == 0 && !scene.lights.empty()) sceneRadius = radiusOf(scene, a, meshBounds);
+        return std::ranges::any_of(scene.lights,
+                                   [&](const Light& light) { return strays(light, a, truth, b, part, sceneRadius); });
     };
     return straightSegments(shutterTurns(scene, open, close), at, anyStrays);
 }
@@ -145,8 +173,7 @@ std::shared_ptr<const ShutterTrack> shutterTrack(const Instance& instance, std::
 std::vector<Mat4> shutterFrames(const Light& light, std::span<const PosedMoment> moments) {
     std::vector<Mat4> frames;
     if (light.node < 0) return frames;
-    for (const PosedMoment& moment : moments)
-        frames.push_back(moment.nodes.worldFromNode[static_cast<size_t>(light.node)]);
+    for (const PosedMoment& moment : moments) frames.push_back(frameOf(light, moment));
     const bool still = std::all_of(frames.begin(), frames.end(), [&](const Mat4& m) { return m == frames[0]; });
     return still ? std::vector<Mat4>() : frames;
 }

@@ -28,7 +28,8 @@ bool deformsAlike(const Instance& instance, const PosedMoment& a, const PosedMom
 std::shared_ptr<const DeformedVertices> deformAt(const Instance& instance, const PosedMoment& moment);
 
 /// Moments from `open` to `close` seconds by straightSegments(): between two of them every instance goes straight,
-/// within a thousandth of its size. `meshBounds` as in PosedScene. Throws Error(Interrupted) once stopped.
+/// within a thousandth of its size, and every light, within a thousandth of the scene's size and of its unit axis.
+/// `meshBounds` as in PosedScene. Throws Error(Interrupted) once stopped.
 std::vector<PosedMoment> shutterMoments(const Scene& scene, float open, float close,
                                         std::span<const Bounds3> meshBounds, const std::stop_token& stop);
 

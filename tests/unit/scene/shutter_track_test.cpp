@@ -64,6 +64,53 @@ TEST(ShutterTrack, FollowsTurnsWhosePlacesComeBackAtEveryHalving) {
     for (const int turns : {1, 2, 3, 4, 8}) EXPECT_LT(farthestOff(circling(turns, 8 * turns), 0, 1), 0.06f) << turns;
 }
 
+/// Beside a card that stands still, a light on a node with one channel that loops through a second.
+std::shared_ptr<Scene> movingLight(LightType type, AnimationChannel channel) {
+    auto scene = movingCard({0, 1}, {Vec3(0), Vec3(0)});
+    scene->nodes.resize(2);
+    Light light;
+    light.type = type;
+    light.node = 1;
+    scene->lights = {light};
+    channel.node = 1;
+    scene->animations = {{{channel}, 1, false}};
+    return scene;
+}
+
+TEST(ShutterTrack, ALightThatAloneMovesKeepsToItsWay) {
+    AnimationChannel places;
+    places.times = {0, 0.25f, 0.5f, 0.75f, 1};
+    for (const float x : {-2, 2, -2, 2, -2}) places.values.insert(places.values.end(), {x, 0, 0});
+    for (const LightType type : {LightType::Point, LightType::Spot}) {
+        const auto scene = movingLight(type, places);
+        const auto posed = poseScene(scene, {.open = 0, .close = 1, .previousOpen = 0});
+        for (int i = 0; i <= 100; ++i) {
+            const float time = static_cast<float>(i) / 100;
+            const float truth = 2 - 8 * std::abs(2 * time - std::floor(2 * time) - 0.5f);
+            EXPECT_NEAR(posed->lights[0].worldFromLightAt(time)[3].x, truth, 0.01f) << time;
+        }
+    }
+}
+
+TEST(ShutterTrack, ALightThatAloneTurnsKeepsToItsAxis) {
+    AnimationChannel turn;
+    turn.property = AnimatedProperty::Rotation;
+    turn.components = 4;
+    for (int i = 0; i <= 16; ++i) {
+        const float angle = kTurn * static_cast<float>(i) / 16;
+        turn.times.push_back(static_cast<float>(i) / 16);
+        turn.values.insert(turn.values.end(), {0, std::sin(angle / 2), 0, std::cos(angle / 2)});
+    }
+    for (const LightType type : {LightType::Spot, LightType::Directional}) {
+        const auto posed = poseScene(movingLight(type, turn), {.open = 0, .close = 1, .previousOpen = 0});
+        for (int i = 0; i <= 100; ++i) {
+            const float time = static_cast<float>(i) / 100;
+            const Vec3 axis = glm::normalize(Vec3(posed->lights[0].worldFromLightAt(time)[2]));
+            EXPECT_LT(glm::distance(axis, Vec3(std::sin(kTurn * time), 0, std::cos(kTurn * time))), 0.01f) << time;
+        }
+    }
+}
+
 TEST(ShutterTrack, SeesAnExcursionBetweenTheHalvings) {
     const std::vector<float> times{0, 0.40f, 0.4375f, 0.475f, 1};
     const std::vector<Vec3> places{Vec3(0), Vec3(0), Vec3(3, 0, 0), Vec3(0), Vec3(0)};
