@@ -4,6 +4,7 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -20,8 +21,15 @@ constexpr const char* kMeshopt = "EXT_meshopt_compression";
 /// a member's key in an object's tree of keys, each with what the allocator adds.
 constexpr uint64_t kValueBytes = 2 * sizeof(Json), kBodyBytes = 64, kMemberBytes = 96;
 
-/// Bytes of an entry of a top-level array in tinygltf's model.
-uint64_t entryBytes(std::string_view section) {
+/// Bytes of what tinygltf's model holds for an object this deep in a top-level array: its entries are at 3, what lies
+/// in an entry's arrays at 5, morph targets at 7.
+uint64_t modelBytes(std::string_view section, int depth) {
+    if (depth == 5 && section == "meshes") return sizeof(tinygltf::Primitive);
+    if (depth == 7 && section == "meshes") return sizeof(std::map<std::string, int>);
+    if (depth == 5 && section == "animations")
+        return std::max(sizeof(tinygltf::AnimationChannel), sizeof(tinygltf::AnimationSampler));
+    if (depth != 3) return 0;
+    if (section == "cameras") return sizeof(tinygltf::Camera);
     if (section == "accessors") return sizeof(tinygltf::Accessor);
     if (section == "bufferViews") return sizeof(tinygltf::BufferView);
     if (section == "images") return sizeof(tinygltf::Image);
@@ -100,7 +108,7 @@ public:
     bool binary(binary_t&) override { return true; }
     bool start_object(std::size_t) override {
         enter();
-        if (depth_ == 3) summary.treeBytes += 2 * entryBytes(section_);
+        if (freeDepth_ == 0) summary.treeBytes += 2 * modelBytes(section_, depth_);
         if (depth_ == 3 && section_ == "buffers") summary.buffers.emplace_back();
         return true;
     }
@@ -116,7 +124,7 @@ public:
         if (freeDepth_ == 0 || depth_ == freeDepth_)
             freeDepth_ = value == "extras" || value == "extensions" ? depth_ : 0;
         key_ = value;
-        summary.treeBytes += kMemberBytes;
+        summary.treeBytes += section_ == "meshes" ? 2 * kMemberBytes : kMemberBytes;  // attributes are kept as maps
         return true;
     }
     bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
