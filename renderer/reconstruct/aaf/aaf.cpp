@@ -15,7 +15,7 @@ std::vector<Tap> declareTaps() {
     taps.push_back(
         {.name = "occlusion",
          .channels = "Y",
-         .help = "Least d1/d2 - 1 of the window's blocked light samples, accumulated; 0 where none was blocked"});
+         .help = "d1/d2 - 1 of the sharpest of the window's shadows, accumulated; 0 where nothing was blocked"});
     taps.push_back({.name = "filterWidth",
                     .channels = "Y",
                     .unit = "m",
@@ -106,9 +106,8 @@ void AafModule::chooseWidths(const Image& occlusion) {
     for (int64_t i = 0; i < extent().area(); ++i) {
         // Means over the frames that had a blocker.
         const float found = occlusion.plane(1).data[i], perFound = found > 1e-3f ? 1 / found : 0;
-        const float slope = occlusion.plane(0).data[i] * perFound, deviation = occlusion.plane(2).data[i] * perFound;
-        width_.data()[i] = deviation * slope / overlap_;
-        if (shown) shown->data()[i] = slope;
+        width_.data()[i] = occlusion.plane(2).data[i] * perFound / overlap_;
+        if (shown) shown->data()[i] = occlusion.plane(0).data[i] * perFound;
     }
     captured().keep("filterWidth", width_);
 }

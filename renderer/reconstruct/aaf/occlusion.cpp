@@ -118,18 +118,18 @@ void gatherOcclusion(const Signals& signals, int radius, const Image& in, Image&
     parallelFor(extent.height, [&](int64_t row) {
         const int y = static_cast<int>(row);
         for (int x = 0; x < extent.width; ++x) {
-            float least = kInfinity, size = 0;
+            float least = kInfinity, slope = 0;  // the least width, and the slope that it belongs to
             for (int j = std::max(y - radius, 0); j <= std::min(y + radius, extent.height - 1); ++j)
                 for (int i = std::max(x - radius, 0); i <= std::min(x + radius, extent.width - 1); ++i) {
-                    if (in.at(1, i, j) == 0 || !(in.at(0, i, j) < least) || !facesAlike(normal, {x, y}, {i, j}))
-                        continue;
-                    least = in.at(0, i, j);
-                    size = in.at(2, i, j);
+                    const float width = in.at(0, i, j) * in.at(2, i, j);
+                    if (in.at(1, i, j) == 0 || !(width < least) || !facesAlike(normal, {x, y}, {i, j})) continue;
+                    least = width;
+                    slope = in.at(0, i, j);
                 }
             const bool found = least < kInfinity;
-            out.at(0, x, y) = found ? least : 0;
+            out.at(0, x, y) = slope;
             out.at(1, x, y) = found ? 1 : 0;
-            out.at(2, x, y) = size;
+            out.at(2, x, y) = found ? least : 0;
         }
     });
 }

@@ -11,9 +11,9 @@ namespace lumi {
 /// if stopped.
 bool measureOcclusion(const FrameContext& context, Image& out);
 
-/// Least R among the blocked pixels of the window of `radius` that see a surface alike (the greatest d2 has the
-/// sharpest shadow), 1 in G, and B of the light that it belongs to; 0 in all three where there is none. `in` and `out`
-/// as above.
+/// Of the blocked pixels of the window of `radius` that see a surface alike, the one with the sharpest shadow, that of
+/// the least R B: its R, 1 in G, and in B that product, the shadow's half-width in metres. Among several lights the
+/// small and near one counts. 0 in all three where nothing is blocked. `in` as above.
 void gatherOcclusion(const Signals& signals, int radius, const Image& in, Image& out);
 
 /// Their normals are within 26 degrees of each other.

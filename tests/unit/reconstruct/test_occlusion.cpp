@@ -96,5 +96,28 @@ TEST(Occlusion, OfALampIsTheRatioOfDistances) {
     EXPECT_GT(under, 10);
 }
 
+TEST(Occlusion, TheSharpestShadowCountsWhoseverSlopeIsLess) {
+    Light lamp;
+    lamp.type = LightType::Rectangle;
+    const Measured measured = measure(lambert(0.5f), lamp, {0, 3, 0});
+    const int x = kExtent.width / 2, y = kExtent.height - 4;  // floor, as its neighbours
+    Image blocked(kExtent, 3), gathered;
+    blocked.fill(0);
+    const auto put = [&](int at, float slope, float deviation) {
+        blocked.at(0, at, y) = slope, blocked.at(1, at, y) = 1, blocked.at(2, at, y) = deviation;
+    };
+    put(x - 1, 0.125f, 0.5f);     // a panel far away: a penumbra of 0.0625 m
+    put(x + 1, 0.5f, 0.015625f);  // a lamp near by: 0.0078125 m
+    gatherOcclusion(measured.signals, 1, blocked, gathered);
+    const auto expect = [&](int at, float slope, float found, float width) {
+        EXPECT_EQ(gathered.at(0, at, y), slope) << at;
+        EXPECT_EQ(gathered.at(1, at, y), found) << at;
+        EXPECT_EQ(gathered.at(2, at, y), width) << at;
+    };
+    expect(x - 3, 0, 0, 0);
+    expect(x - 2, 0.125f, 1, 0.0625f);
+    for (const int at : {x, x + 1, x + 2}) expect(at, 0.5f, 1, 0.0078125f);
+}
+
 }  // namespace
 }  // namespace lumi::test
