@@ -160,9 +160,13 @@ void FilterBench::runMarks(const std::string& id, const std::string& name, const
     const auto perPixel = [](Extent2 size, const RunTimes& ms) {
         return ms.median() / static_cast<double>(size.area());
     };
-    for (const auto& [extent, own, usual] : sizes)
-        output({named(extent), perPixel(extent, own) / perPixel(kFilterExtent, usual), "of 720p", own.median(),
-                own.spread(), kMostPerPixel, true});
+    double least = 1, most = 1;
+    for (const auto& [extent, own, usual] : sizes) {
+        const double ratio = perPixel(extent, own) / perPixel(kFilterExtent, usual);
+        least = std::min(least, ratio), most = std::max(most, ratio);
+        output({named(extent), ratio, "of 720p", own.median(), own.spread(), kMostPerPixel, true});
+    }
+    output({name + "/size-spread", most / least, "of cheapest", 0, 0, kMostPerPixel, true});
 }
 
 }  // namespace lumi

@@ -49,7 +49,7 @@ void addStages(const Study& study, std::vector<StudyMethod>& methods) {
 
 std::vector<StudyMethod> listMethods(const Study& study) {
     std::vector<StudyMethod> methods;
-    const auto add = [&](size_t index, const std::vector<StudyValue>& swept) {
+    const auto add = [&](size_t index, const std::vector<StudyValue>& swept, const std::vector<StudyValue>& along) {
         const StudyEntry& entry = study.entries[index];
         StudyMethod method;
         method.entry = index;
@@ -63,6 +63,7 @@ std::vector<StudyMethod> listMethods(const Study& study) {
             method.fixed.push_back(value.id);
             shown += (shown.empty() ? "" : ", ") + value.id + "=" + value.text;
         }
+        for (const StudyValue& value : along) method.set.push_back(value), method.fixed.push_back(value.id);
         if (!swept.empty()) method.name += " [" + shown + "]";
         methods.push_back(std::move(method));
     };
@@ -70,9 +71,16 @@ std::vector<StudyMethod> listMethods(const Study& study) {
         const bool swept = study.sweep && (study.sweep->entries.empty() ||
                                            std::count(study.sweep->entries.begin(), study.sweep->entries.end(),
                                                       study.entries[i].name) > 0);
-        if (!swept) add(i, {});
-        else
-            for (const std::vector<StudyValue>& point : combinations(study.sweep->axes)) add(i, point);
+        if (!swept) {
+            add(i, {}, {});
+            continue;
+        }
+        const std::vector<std::vector<StudyValue>> points = combinations(study.sweep->axes);
+        for (size_t point = 0; point < points.size(); ++point) {
+            std::vector<StudyValue> along;
+            for (const StudyAxis& axis : study.sweep->with) along.push_back({axis.id, axis.values[point], axis.where});
+            add(i, points[point], along);
+        }
     }
     addStages(study, methods);
     return methods;

@@ -65,6 +65,7 @@ struct StudyReference {
 
 struct StudySweep {
     std::vector<StudyAxis> axes;       ///< one or two
+    std::vector<StudyAxis> with;       ///< what moves along with a single axis, a value for each of its
     std::vector<std::string> entries;  ///< swept; empty: all
 };
 

@@ -106,9 +106,18 @@ void readSweep(const JsonTree& tree, const JsonValue* section, Study& study) {
     if (!section) return;
     ObjectReader reader(tree, *section, "sweep");
     StudySweep sweep;
-    const JsonValue& axes = reader.need("axes");
-    sweep.axes = readAxes(tree, &axes, "axes");
-    if (sweep.axes.empty() || sweep.axes.size() > 2) refuseValue(tree, axes, "axes", "one or two axes");
+    const JsonValue& axesFound = reader.need("axes");
+    sweep.axes = readAxes(tree, &axesFound, "axes");
+    if (sweep.axes.empty() || sweep.axes.size() > 2) refuseValue(tree, axesFound, "axes", "one or two axes");
+    if (const JsonValue* with = reader.find("with")) {
+        sweep.with = readAxes(tree, with, "with", false);
+        if (sweep.axes.size() > 1) refuseValue(tree, *with, "with", "a single axis beside it");
+        for (const StudyAxis& axis : sweep.with)
+            if (axis.values.size() != sweep.axes[0].values.size())
+                throwBadInput({fmt::format("\"{}\" has {} values", axis.id, axis.values.size()), axis.where,
+                               fmt::format("{}, as many as \"{}\"", sweep.axes[0].values.size(), sweep.axes[0].id),
+                               ""});
+    }
     if (const JsonValue* entries = reader.find("entries")) {
         if (!entries->isArray()) refuseValue(tree, *entries, "entries", "an array of names");
         for (const JsonValue& item : entries->items)
@@ -118,9 +127,10 @@ void readSweep(const JsonTree& tree, const JsonValue* section, Study& study) {
     for (const StudyEntry& entry : study.entries) {
         const bool swept = sweep.entries.empty() ||
                            std::find(sweep.entries.begin(), sweep.entries.end(), entry.name) != sweep.entries.end();
-        for (const StudyAxis& axis : sweep.axes)
-            for (const std::string& text : axis.values)
-                if (swept) checkModuleValue(entry.module, {axis.id, text, axis.where});
+        for (const std::vector<StudyAxis>* axes : {&sweep.axes, &sweep.with})
+            for (const StudyAxis& axis : *axes)
+                for (const std::string& text : axis.values)
+                    if (swept) checkModuleValue(entry.module, {axis.id, text, axis.where});
     }
     study.sweep = std::move(sweep);
 }

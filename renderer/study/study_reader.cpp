@@ -117,7 +117,8 @@ std::vector<StudyValue> readValues(const JsonTree& tree, const JsonValue* sectio
     return values;
 }
 
-std::vector<StudyAxis> readAxes(const JsonTree& tree, const JsonValue* section, const std::string& name) {
+std::vector<StudyAxis> readAxes(const JsonTree& tree, const JsonValue* section, const std::string& name,
+                                bool distinct) {
     std::vector<StudyAxis> axes;
     if (!section) return axes;
     if (!section->isObject()) refuseValue(tree, *section, name, "an object of arrays");
@@ -127,7 +128,7 @@ std::vector<StudyAxis> readAxes(const JsonTree& tree, const JsonValue* section, 
         StudyAxis axis{member.key, {}, tree.where(member.at)};
         for (const JsonValue& item : member.value.items) {
             axis.values.push_back(studyValueText(tree, item, member.key));
-            if (std::count(axis.values.begin(), axis.values.end(), axis.values.back()) > 1)
+            if (distinct && std::count(axis.values.begin(), axis.values.end(), axis.values.back()) > 1)
                 throwBadInput(
                     {fmt::format("\"{}\" has {} twice", member.key, item.shown()), tree.where(item.at), "", ""});
         }

@@ -20,8 +20,9 @@ std::vector<std::string> readTexts(const JsonTree& tree, const JsonValue& value,
 
 /// {"id": value}.
 std::vector<StudyValue> readValues(const JsonTree& tree, const JsonValue* section, const std::string& name);
-/// {"id": [values]}.
-std::vector<StudyAxis> readAxes(const JsonTree& tree, const JsonValue* section, const std::string& name);
+/// {"id": [values]}; with `distinct` equal values are refused.
+std::vector<StudyAxis> readAxes(const JsonTree& tree, const JsonValue* section, const std::string& name,
+                                bool distinct = true);
 
 /// Refuses names that are no good in results and file names.
 void checkFileName(const JsonTree& tree, const JsonValue& value, const std::string& name);

@@ -211,7 +211,10 @@ Json bodySchema() {
         closed({{"relmse-epsilon", {{"type", "number"}, {"minimum", 1e-12}, {"maximum", 1e6}, {"default", 0.001}}},
                 {"hdr-flip-exposures", std::move(exposures)}},
                "What metrics are told beside the images.");
+    Json along = reference("axes");
+    along["description"] = "Parameters that change along with a single axis: a value for each of its.";
     all["sweep"] = closed({{"axes", reference("axes")},
+                           {"with", std::move(along)},
                            {"entries", listOf(text("An entry's name."), "Which are swept; by default all.")}},
                           "Entries run with every combination of one or two parameters' values.", {"axes"});
     all["tuning"] = closed({{"frame", whole(0, 10'000'000, "A frame that is not measured.")},
@@ -220,9 +223,11 @@ Json bodySchema() {
                            "How values under an entry's \"tune\" are chosen, for each scene: one parameter after the "
                            "other, from the middle of their values, until none moves.",
                            {"frame"});
-    const Json others = {
-        {"description", "The entry it is held against, or several that are one method at several costs."},
-        {"anyOf", {text("An entry's name."), listOf(text("An entry's name."), "Entries.")}}};
+    const Json others = {{"description",
+                          "The entry it is held against, or several: the strongest of them counts. In a pair, or with "
+                          "at-equal, they are one "
+                          "method at several costs."},
+                         {"anyOf", {text("An entry's name."), listOf(text("An entry's name."), "Entries.")}}};
     all["pairs"] = listOf(closed({{"entry", text("An entry.")}, {"against", others}}, "A pair.", {"entry", "against"}),
                           "Equal time, equal error and equivalent samples between entries.", 0);
     all["ablations"] = ablationsSchema();

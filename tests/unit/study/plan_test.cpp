@@ -56,6 +56,25 @@ TEST(Plan, ASweepIsEveryCombination) {
     EXPECT_EQ(plan.jobs.size(), 3u);
 }
 
+TEST(Plan, WhatASweepTakesAlongFollowsItsAxis) {
+    const StudyPlan plan = planStudy(parse(R"("scenes": ["cornell"], "entries": [{"name": "a", "module": "accumulate"}],
+        "sweep": {"axes": {"path.max-depth": [3, 4, 5]}, "with": {"max-samples": [7, 8, 7], "render.exposure": [0, 1, 2]}})"));
+    ASSERT_EQ(plan.methods.size(), 3u);
+    EXPECT_EQ(plan.methods[1].name, "a [path.max-depth=4]");
+    EXPECT_EQ(plan.methods[1].coordinates, (std::vector<std::string>{"4"}));
+    const auto valueOf = [&](size_t method, const std::string& id) {
+        std::string text;
+        for (const StudyValue& value : plan.methods[method].set)
+            if (value.id == id) text = value.text;
+        return text;
+    };
+    for (size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(valueOf(i, "path.max-depth"), std::to_string(3 + i));
+        EXPECT_EQ(valueOf(i, "max-samples"), i == 1 ? "8" : "7");
+        EXPECT_EQ(valueOf(i, "render.exposure"), std::to_string(i));
+    }
+}
+
 TEST(Plan, TuningComesBeforeWhatItTunes) {
     const StudyPlan plan =
         planStudy(parse(R"("scenes": ["cornell"], "frames": {"range": [0, 4]}, "tuning": {"frame": 1},

@@ -137,6 +137,14 @@ TEST(StudyFile, ModuleParametersAreCheckedAgainstTheCatalogue) {
     refused(entry(R"({"module": "none"}, {"module": "none"})"), {"two entries are called \"none\""});
     refused(withMember(R"("sweep": {"axes": {"component": ["direct", "indrect"]}})"), {"indrect", ":3:"});
     refused(withMember(R"("sweep": {"axes": {}})"), {"one or two axes"});
+    refused(withMember(R"("sweep": {"axes": {"path.max-depth": [1, 2]}, "with": {"render.exposure": [0]}})"),
+            {"\"render.exposure\" has 1 values", "2, as many as \"path.max-depth\""});
+    refused(
+        withMember(
+            R"("sweep": {"axes": {"path.max-depth": [1], "path.clamp": [true]}, "with": {"render.exposure": [0]}})"),
+        {"a single axis beside it"});
+    refused(withMember(R"("sweep": {"axes": {"path.max-depth": [1]}, "with": {"component": ["indrect"]}})"),
+            {"indrect"});
     refused(withMember(R"("tuning": {"frame": 0}, "frames": {"range": [0, 2], "measure": [0]})"),
             {"a frame that is not measured"});
 }
