@@ -74,10 +74,11 @@ void addChoices(const std::filesystem::path& file, const Document& document, jso
         info["scenes"].push_back({{"index", i}, {"title", choices.scenes[i]}, {"shown", static_cast<int>(i) == shown}});
     for (const std::string& variant : choices.variants)
         info["variants"].push_back({{"title", variant}, {"shown", variant == choice.variant}});
-    std::set<std::string> played;
-    for (const Animation& animation : document.loadedScene()->animations) played.insert(animation.name);
-    for (const std::string& name : choices.animations)
-        info["animations"].push_back({{"title", name}, {"shown", played.contains(name)}});
+    std::set<int> played;
+    for (const Animation& animation : document.loadedScene()->animations) played.insert(animation.index);
+    for (size_t i = 0; i < choices.animations.size(); ++i)
+        info["animations"].push_back(
+            {{"index", i}, {"title", choices.animations[i]}, {"shown", played.contains(static_cast<int>(i))}});
 }
 
 json infoJson(const Scene& scene, const std::filesystem::path& file, const SceneMemory& memory, const MessageLog& log) {
@@ -137,16 +138,22 @@ std::string someOf(const json& things) {
     return text;
 }
 
-/// `0 "day", 1 (shown)`: the second has no name.
+/// `0 "day", 1 (shown) and 7 more`: the second has no name. Those that are shown are listed wherever they stand.
 std::string choicesText(const json& things) {
+    constexpr size_t kListed = 20;
     std::vector<std::string> texts;
+    size_t more = 0;
     for (const json& thing : things) {
+        if (texts.size() >= kListed && (!thing["shown"].get<bool>() || texts.size() >= 2 * kListed)) {
+            ++more;
+            continue;
+        }
         const std::string title = thing["title"].get<std::string>();
         std::string text = thing.contains("index") ? std::to_string(thing["index"].get<int>()) : "";
-        if (!title.empty() || text.empty()) text += (text.empty() ? "\"" : " \"") + title + '"';
+        if (text.empty() || (!title.empty() && title != text)) text += (text.empty() ? "\"" : " \"") + title + '"';
         texts.push_back(text + (thing["shown"].get<bool>() ? " (shown)" : ""));
     }
-    return fmt::format("{}", fmt::join(texts, ", "));
+    return fmt::format("{}{}", fmt::join(texts, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
 void printInfo(const json& info, const Scene& scene, const SceneMemory& memory) {
@@ -164,8 +171,8 @@ void printInfo(const json& info, const Scene& scene, const SceneMemory& memory) 
         line("variants", fmt::format("{}: {}; --set scene.variant=NAME shows one", info["variants"].size(),
                                      choicesText(info["variants"])));
     if (info["animations"].size() > 1)
-        line("animations", fmt::format("{}: {}; --set scene.animation=NAME plays one alone", info["animations"].size(),
-                                       choicesText(info["animations"])));
+        line("animations", fmt::format("{}: {}; --set scene.animation=NAME or number plays one alone",
+                                       info["animations"].size(), choicesText(info["animations"])));
     line("materials", fmt::format("{}: {}", info["materials"].size(), someOf(info["materials"])));
     std::string lights =
         fmt::format("{}{}{}", scene.lights.size(), scene.lights.empty() ? "" : ": ", someOf(info["lights"]));

@@ -30,7 +30,7 @@ struct Animation {
     std::vector<AnimationChannel> channels;
     float duration = 0;
     bool loop = true;
-    std::string name = {};  ///< the file's, or its number there; empty for what no file names
+    int index = -1;  ///< in the glTF that it comes from; -1: in none
 };
 
 }  // namespace lumi

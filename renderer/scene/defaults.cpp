@@ -85,10 +85,9 @@ bool mayMeet(const Bounds3& box, const Vec3& origin, const std::array<Vec3, kRay
     return false;
 }
 
-/// Adds what the rays from `origin` meet of the instance, which lies in `box`, at time 0.
-void traceInstance(const NodePose& pose, PosedSkins& skins, const Instance& instance, const Bounds3& box,
-                   const Vec3& origin, const std::array<Vec3, kRays>& directions, FirstHits& hits) {
-    if (!mayMeet(box, origin, directions, hits)) return;
+/// Adds what the rays from `origin` meet of the instance at time 0.
+void traceInstance(const NodePose& pose, PosedSkins& skins, const Instance& instance, const Vec3& origin,
+                   const std::array<Vec3, kRays>& directions, FirstHits& hits) {
     const Mesh& mesh = *instance.mesh;
     const bool skinned = instance.skin >= 0 && !mesh.skin.empty();
     Mat4 worldFromObject(1);
@@ -158,11 +157,19 @@ FirstHits lookAround(const Scene& scene, const Vec3& origin, const std::stop_tok
     PosedSkins skins(scene, pose);
     FirstHits hits;
     MeshBounds meshBounds;
-    constexpr size_t kPollStride = 1024;
+    constexpr size_t kPollStride = 64;
+    // Triangles that are traced of meshes once more: seconds, where thousands stand around one place.
+    constexpr uint64_t kMostAgain = uint64_t(1) << 24;
+    std::unordered_set<const Mesh*> traced;
+    uint64_t again = 0;
     size_t next = 0;
     eachBounds(scene, pose, meshBounds, [&](const Bounds3& box) {
         if (next % kPollStride == 0) checkLoadStop(scene, stop);
-        traceInstance(pose, skins, scene.instances[next++], box, origin, directions, hits);
+        const Instance& instance = scene.instances[next++];
+        if (!mayMeet(box, origin, directions, hits)) return;
+        const bool isFirst = traced.insert(instance.mesh.get()).second;
+        if (!isFirst) again += instance.mesh->triangles.size();
+        if (isFirst || again <= kMostAgain) traceInstance(pose, skins, instance, origin, directions, hits);
     });
     return hits;
 }

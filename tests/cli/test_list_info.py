@@ -108,7 +108,7 @@ class Info(CommandTest):
         text = self.good("info", "two.gltf", "--set", "scene.index=0", "--set", "scene.variant=green").out
         self.assertIn('scenes      2: 0 "Day" (shown), 1; --set scene.index=N shows another', text)
         self.assertIn('variants    2: "red", "green" (shown); --set scene.variant=NAME shows one', text)
-        self.assertIn('animations  2: "walk", "1"; --set scene.animation=NAME plays one alone', text)
+        self.assertIn('animations  2: 0 "walk", 1; --set scene.animation=NAME or number plays one alone', text)
         self.refused(2, ["no such animation", "walk, 1", "run"], "info", "two.gltf", "--set", "scene.animation=run")
         info = self.good("info", "cornell", "--json").json
         self.assertEqual((info["scenes"], info["variants"], info["animations"]), ([], [], []))

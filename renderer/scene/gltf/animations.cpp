@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "scene/gltf/accessor.h"
+#include "scene/gltf/choices.h"
 
 namespace lumi::gltf {
 namespace {
@@ -89,16 +90,16 @@ std::optional<size_t> chosenAnimation(const Document& document) {
     const std::string& wanted = document.options().choice.animation;
     if (wanted.empty()) return std::nullopt;
     const size_t count = document.model().animations.size();
-    std::string known;
+    std::vector<std::string> known;
     for (size_t a = 0; a < count; ++a) {
         if (nameOf(document, a) == wanted) return a;
-        known += (known.empty() ? "" : ", ") + nameOf(document, a);
+        known.push_back(nameOf(document, a));
     }
     for (size_t a = 0; a < count; ++a)
         if (std::to_string(a) == wanted) return a;
     throwUsage({.what = "no such animation",
                 .where = document.path().filename().string(),
-                .expected = known.empty() ? "none: the file has no animations" : known,
+                .expected = known.empty() ? "none: the file has no animations" : listedNames(known),
                 .found = wanted});
 }
 
@@ -107,12 +108,13 @@ std::optional<size_t> chosenAnimation(const Document& document) {
 void loadAnimations(const Document& document, const NodeTree& tree, Scene& scene) {
     std::set<std::pair<int, AnimatedProperty>> moved;
     const std::optional<size_t> chosen = chosenAnimation(document);
+    std::vector<std::string> notPlayed;
     for (size_t a = 0; a < document.model().animations.size(); ++a) {
         if (a != chosen.value_or(a)) continue;
         const tinygltf::Animation& source = document.model().animations[a];
         const std::string path = "/animations/" + std::to_string(a);
         Animation animation;
-        animation.name = nameOf(document, a);
+        animation.index = static_cast<int>(a);
         bool conflicts = false;
         for (size_t c = 0; c < source.channels.size(); ++c) {
             std::optional<AnimationChannel> channel = readChannel(document, tree, source, c, path);
@@ -124,14 +126,15 @@ void loadAnimations(const Document& document, const NodeTree& tree, Scene& scene
             animation.channels.push_back(std::move(*channel));
         }
         if (conflicts) {
-            document.info("the animation \"" + animation.name +
-                          "\" moves what an earlier one moves and is not played; " +
-                          "scene.animation (\"animation\" in a scene file) plays it alone");
+            notPlayed.push_back(nameOf(document, a));
             continue;
         }
         for (const AnimationChannel& channel : animation.channels) moved.insert({channel.node, channel.property});
         if (!animation.channels.empty()) scene.animations.push_back(std::move(animation));
     }
+    if (!notPlayed.empty())
+        document.info("what moves the same as an earlier animation is not played: " + listedNames(notPlayed) +
+                      "; scene.animation (\"animation\" in a scene file) plays one alone");
 }
 
 }  // namespace lumi::gltf

@@ -1,5 +1,7 @@
 #include "scene/gltf/choices.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -52,6 +54,13 @@ Choices readChoices(const std::filesystem::path& path) {
         tree["extensions"].contains("KHR_materials_variants"))
         choices.variants = namesIn(tree["extensions"]["KHR_materials_variants"], "variants");
     return choices;
+}
+
+std::string listedNames(const std::vector<std::string>& names) {
+    constexpr size_t kMost = 20;
+    const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kMost));
+    const std::string text = fmt::format("{}", fmt::join(names.begin(), end, ", "));
+    return names.size() > kMost ? fmt::format("{} and {} more", text, names.size() - kMost) : text;
 }
 
 }  // namespace lumi::gltf

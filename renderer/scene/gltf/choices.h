@@ -16,4 +16,7 @@ struct Choices {
 /// Reads them from the JSON of a .gltf or .glb, nothing else of it. Throws Error(BadInput) for what is no JSON.
 Choices readChoices(const std::filesystem::path& path);
 
+/// "a, b, c": the first 20 of them, and how many more there are.
+std::string listedNames(const std::vector<std::string>& names);
+
 }  // namespace lumi::gltf

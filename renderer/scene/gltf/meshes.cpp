@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "scene/deform.h"
+#include "scene/gltf/choices.h"
 #include "scene/gltf/counts.h"
 #include "scene/gltf/primitive.h"
 #include "scene/gltf/values.h"
@@ -27,11 +28,9 @@ int variantIndex(const Document& document) {
                 names.push_back(textOf(root->Get("variants").Get(static_cast<int>(i)), "name"));
     for (size_t i = 0; i < names.size(); ++i)
         if (names[i] == wanted) return static_cast<int>(i);
-    std::string known;
-    for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
     throwUsage({.what = "no such material variant",
                 .where = document.path().filename().string(),
-                .expected = known.empty() ? "none: the file has no variants" : known,
+                .expected = names.empty() ? "none: the file has no variants" : listedNames(names),
                 .found = wanted});
 }
 
