@@ -52,7 +52,10 @@ class Bench(CommandTest):
     def test_marks_are_judged_when_asked(self):
         result = self.run_program("bench", "--filter", "^mark/svgf$", "--check", "--json", "--quiet")
         marks = result.json["results"]
-        self.assertEqual([mark["name"] for mark in marks], ["mark/svgf/1280x720", "mark/svgf/640x360", "mark/svgf/1920x1080"])
+        self.assertEqual([mark["name"] for mark in marks],
+                         ["mark/svgf/1280x720", "mark/svgf/640x360", "mark/svgf/1920x1080", "mark/svgf/size-spread"])
+        sizes = [1] + [mark["value"] for mark in marks[1:3]]
+        self.assertAlmostEqual(marks[3]["value"], max(sizes) / min(sizes), places=3)
         for mark in marks:
             self.assertEqual(mark["holds"], mark["value"] <= mark["limit"])
         self.assertEqual(marks[0]["limit"], 120)
