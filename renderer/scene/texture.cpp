@@ -63,74 +63,6 @@ Vec4 sampleLevel(const Texture& texture, const TextureImage::Level& level, Vec2 
 
 bool finite(Vec2 v) { return std::isfinite(v.x) && std::isfinite(v.y); }
 
-/// Half of an extent, rounded down, at least 1.
-Extent2 halved(Extent2 extent) { return {std::max(1, extent.width / 2), std::max(1, extent.height / 2)}; }
-
-/// Encoded byte of a linear value in [0, 2^14): fine enough that the darkest codes keep their own entries.
-struct SrgbTables {
-    std::vector<uint16_t> linearFromCode = std::vector<uint16_t>(256);
-    std::vector<uint8_t> codeFromLinear = std::vector<uint8_t>(1 << 14);
-    SrgbTables() {
-        for (int i = 0; i < 256; ++i)
-            linearFromCode[static_cast<size_t>(i)] =
-                static_cast<uint16_t>(std::lround(linearFromSrgb(static_cast<float>(i) / 255) * 65535));
-        for (int i = 0; i < (1 << 14); ++i) {
-            const float linear = (static_cast<float>(i) + 0.5f) / (1 << 14);
-            codeFromLinear[static_cast<size_t>(i)] = static_cast<uint8_t>(std::lround(srgbFromLinear(linear) * 255));
-        }
-        codeFromLinear[0] = 0;
-    }
-};
-
-const SrgbTables& srgbTables() {
-    static const SrgbTables tables;
-    return tables;
-}
-
-/// One row of the next level from two rows above it; `step` is the distance in bytes to the right neighbour.
-void halveRowSrgb(const uint8_t* top, const uint8_t* bottom, size_t step, int count, uint8_t* out) {
-    const uint16_t* linear = srgbTables().linearFromCode.data();
-    const uint8_t* code = srgbTables().codeFromLinear.data();
-    for (int x = 0; x < count; ++x, top += 8, bottom += 8, out += 4) {
-        for (int c = 0; c < 3; ++c) {
-            const uint32_t sum =
-                uint32_t(linear[top[c]]) + linear[top[step + c]] + linear[bottom[c]] + linear[bottom[step + c]];
-            out[c] = code[sum >> 4];
-        }
-        out[3] = static_cast<uint8_t>((uint32_t(top[3]) + top[step + 3] + bottom[3] + bottom[step + 3] + 2) >> 2);
-    }
-}
-
-void halveRowLinear(const uint8_t* top, const uint8_t* bottom, size_t step, int count, uint8_t* out) {
-    for (int x = 0; x < count; ++x, top += 8, bottom += 8, out += 4)
-        for (int c = 0; c < 4; ++c)
-            out[c] = static_cast<uint8_t>((uint32_t(top[c]) + top[step + c] + bottom[c] + bottom[step + c] + 2) >> 2);
-}
-
-void halveRowFloat(const float* top, const float* bottom, size_t step, int count, float* out) {
-    for (int x = 0; x < count; ++x, top += 8, bottom += 8, out += 4)
-        for (int c = 0; c < 4; ++c) out[c] = 0.25f * (top[c] + top[step + c] + bottom[c] + bottom[step + c]);
-}
-
-TextureImage::Level halvedLevel(const TextureImage::Level& from, bool srgb) {
-    TextureImage::Level to;
-    to.extent = halved(from.extent);
-    const size_t rowFrom = 4 * static_cast<size_t>(from.extent.width), rowTo = 4 * static_cast<size_t>(to.extent.width);
-    const size_t step = from.extent.width > 1 ? 4 : 0;
-    const bool isFloat = !from.floats.empty();
-    if (isFloat) to.floats.resize(rowTo * static_cast<size_t>(to.extent.height));
-    else to.bytes.resize(rowTo * static_cast<size_t>(to.extent.height));
-    for (int y = 0; y < to.extent.height; ++y) {
-        const size_t top = rowFrom * static_cast<size_t>(2 * y);
-        const size_t bottom = from.extent.height > 1 ? top + rowFrom : top;
-        const size_t out = rowTo * static_cast<size_t>(y);
-        if (isFloat) halveRowFloat(&from.floats[top], &from.floats[bottom], step, to.extent.width, &to.floats[out]);
-        else if (srgb) halveRowSrgb(&from.bytes[top], &from.bytes[bottom], step, to.extent.width, &to.bytes[out]);
-        else halveRowLinear(&from.bytes[top], &from.bytes[bottom], step, to.extent.width, &to.bytes[out]);
-    }
-    return to;
-}
-
 }  // namespace
 
 size_t TextureImage::byteCount() const {
@@ -205,10 +137,6 @@ float Texture::sampleAlpha(Vec2 uv) const {
     const float top = alpha(x.first, y.first) * (1 - x.weight) + alpha(x.second, y.first) * x.weight;
     const float bottom = alpha(x.first, y.second) * (1 - x.weight) + alpha(x.second, y.second) * x.weight;
     return top * (1 - y.weight) + bottom * y.weight;
-}
-
-void buildMips(TextureImage& image) {
-    while (image.levels.back().extent.area() > 1) image.levels.push_back(halvedLevel(image.levels.back(), image.srgb));
 }
 
 }  // namespace lumi

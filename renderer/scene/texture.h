@@ -11,9 +11,9 @@ namespace lumi {
 enum class Wrap : uint8_t { Repeat, MirroredRepeat, ClampToEdge };
 enum class TextureFilter : uint8_t { Nearest, Linear };
 
-/// Decoded pixels with their mip pyramid (2x2 box in linear light). Level 0 is the file's, row 0 its top row;
-/// level k is half of level k-1, rounded down, at least 1.
-/// Either 8-bit RGBA (colour textures keep sRGB encoding until lookup) or float RGBA (HDR).
+/// Decoded pixels with their mip pyramid. Level 0 is the file's, row 0 its top row; level k is half of level k-1,
+/// rounded down, at least 1, each texel the mean of what it covers there in linear light: all levels have the same
+/// mean. Either 8-bit RGBA (colour textures keep sRGB encoding until lookup) or float RGBA (HDR).
 struct TextureImage {
     struct Level {
         Extent2 extent;

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "math/colour.h"
+#include "math/hash.h"
 
 namespace lumi {
 namespace {
@@ -92,6 +94,69 @@ TEST(Texture, OddExtentsHalveDownToOneTexel) {
     EXPECT_EQ(image->levels[1].extent, (Extent2{2, 1}));
     EXPECT_EQ(image->levels[2].extent, (Extent2{1, 1}));
     EXPECT_EQ(image->levels[2].bytes[0], 90);
+}
+
+enum class Format { Linear, Srgb, Float };
+
+/// Random texels; those of the last row and column are bright, which levels that lose them cannot hide.
+TextureImage randomImage(Extent2 extent, Format format) {
+    TextureImage image;
+    image.srgb = format == Format::Srgb;
+    TextureImage::Level level{extent, {}, {}};
+    for (int y = 0; y < extent.height; ++y)
+        for (int x = 0; x < extent.width; ++x)
+            for (int c = 0; c < 4; ++c) {
+                const uint32_t hash = pcgHash(static_cast<uint32_t>(4 * (y * extent.width + x) + c));
+                const bool last = x == extent.width - 1 || y == extent.height - 1;
+                const auto code = static_cast<uint8_t>(last ? 255 - hash % 16 : hash % 128);
+                if (format == Format::Float) level.floats.push_back(20 * byte(code));
+                else level.bytes.push_back(code);
+            }
+    image.levels.push_back(level);
+    buildMips(image);
+    return image;
+}
+
+/// Linear, of one channel.
+double meanOf(const TextureImage& image, const TextureImage::Level& level, size_t channel) {
+    double sum = 0;
+    for (size_t i = channel; i < 4 * static_cast<size_t>(level.extent.area()); i += 4) {
+        if (!level.floats.empty()) sum += level.floats[i];
+        else sum += image.srgb && channel < 3 ? linearFromSrgb(byte(level.bytes[i])) : byte(level.bytes[i]);
+    }
+    return sum / static_cast<double>(level.extent.area());
+}
+
+TEST(Texture, EveryLevelHasTheMeanOfTheOneAbove) {
+    for (const Format format : {Format::Linear, Format::Srgb, Format::Float})
+        for (int height = 1; height <= 33; ++height)
+            for (int width = 1; width <= 33; ++width) {
+                const TextureImage image = randomImage({width, height}, format);
+                for (size_t k = 1; k < image.levels.size(); ++k)
+                    for (size_t c = 0; c < 4; ++c) {
+                        // Half a code, which of sRGB is widest at white.
+                        const bool encoded = format == Format::Srgb && c < 3;
+                        const double rounding = format == Format::Float ? 2e-5 : encoded ? 0.0046 : 0.5001 / 255;
+                        ASSERT_NEAR(meanOf(image, image.levels[k], c), meanOf(image, image.levels[k - 1], c), rounding)
+                            << width << 'x' << height << ", level " << k << ", channel " << c;
+                    }
+            }
+}
+
+TEST(Texture, HalfBlackHalfWhiteIsGreyFromAfar) {
+    std::vector<uint8_t> greys(1000, 0);
+    std::fill(greys.begin() + 500, greys.end(), uint8_t(255));
+    EXPECT_NEAR(row(greys).sample({0.3f, 0.5f}, 1e6f).x, 0.5f, 2.5f / 255);
+    EXPECT_NEAR(row(greys, true).sample({0.3f, 0.5f}, 1e6f).x, 0.5f, 0.02f);
+}
+
+TEST(Texture, OddLevelsOfOneColourKeepIt) {
+    for (const bool srgb : {false, true})
+        for (int code = 0; code < 256; ++code) {
+            const Texture texture = row(std::vector<uint8_t>(7, static_cast<uint8_t>(code)), srgb);
+            for (const TextureImage::Level& level : texture.image->levels)
+                for (size_t i = 0; i < level.bytes.size(); ++i) ASSERT_EQ(level.bytes[i], i % 4 == 3 ? 255 : code);
+        }
 }
 
 TEST(Texture, FloatImagesKeepTheirRange) {
