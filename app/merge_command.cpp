@@ -40,7 +40,10 @@ int runMerge(const MergeCommand& options, const MachineOptions& machine) {
             throwBadInput({"the first samples are missing", options.parts.front(), "parts from sample 0 on",
                            fmt::format("{}..{}", range.begin, range.end)});
         const Reference reference = finishedReference(state);
-        ReferencePicture::parse(state.note, options.parts.front()).write(options.out, reference, "", nullptr);
+        MessageLog log;
+        ReferencePicture::parse(state.note, options.parts.front()).write(options.out, reference, "", nullptr).warn(log);
+        for (const std::string& text : log.warnings())
+            if (!machine.quiet) std::fputs(("warning: " + text + '\n').c_str(), stderr);
         result["error"] = std::isfinite(reference.error) ? nlohmann::json(reference.error) : nlohmann::json();
     }
     if (machine.json) std::puts(jsonText(result, 2).c_str());

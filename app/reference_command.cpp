@@ -229,7 +229,7 @@ private:
             ReferencePicture::of(document, job_.sceneReference(), options_.buffers, options_.half);
         for (const std::string& name : names_) {
             files_.push_back(numberedName(name, number));
-            picture.write(files_.back(), reference, options_.buffers, signals);
+            picture.write(files_.back(), reference, options_.buffers, signals).warn(log_);
         }
         json entry = {{"frame", number},
                       {"samples", reference.samples},

@@ -97,8 +97,8 @@ std::string ReferencePicture::stateOf(uint64_t samples) const {
     return value.dump();
 }
 
-void ReferencePicture::write(const std::filesystem::path& path, const Reference& reference, const std::string& buffers,
-                             std::shared_ptr<const Signals> signals) const {
+Written ReferencePicture::write(const std::filesystem::path& path, const Reference& reference,
+                                const std::string& buffers, std::shared_ptr<const Signals> signals) const {
     FrameOutput frame;
     frame.number = 0;
     frame.camera = camera;
@@ -112,7 +112,7 @@ void ReferencePicture::write(const std::filesystem::path& path, const Reference&
     frame.signals = signals;
     BufferSelection selection = BufferSelection::parse(buffers, view.module, "--buffers");
     selection.taps.clear();
-    writeView(path, frame, view, selection, half, stateOf(reference.samples));
+    return writeView(path, frame, view, selection, half, stateOf(reference.samples));
 }
 
 }  // namespace lumi

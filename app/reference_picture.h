@@ -4,6 +4,7 @@
 
 #include "reference/reference.h"
 #include "session/document.h"
+#include "session/export.h"
 #include "session/frame_engine.h"
 #include "session/state_log.h"
 
@@ -28,8 +29,8 @@ struct ReferencePicture {
     std::string stateOf(uint64_t samples) const;
     /// Writes .exr (R, G, B, A, Z and the signals of `buffers` that `signals` has) or .png. The bytes are those that
     /// `render` writes for the same samples. `signals` may be null. Throws Error(Usage) for other extensions.
-    void write(const std::filesystem::path& path, const Reference& reference, const std::string& buffers,
-               std::shared_ptr<const Signals> signals) const;
+    Written write(const std::filesystem::path& path, const Reference& reference, const std::string& buffers,
+                  std::shared_ptr<const Signals> signals) const;
 };
 
 }  // namespace lumi

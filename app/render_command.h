@@ -18,7 +18,8 @@ namespace lumi {
 class RenderOutputs {
 public:
     /// Checks every name before the first ray, and that its folder, which is created, can be written. Without an ffmpeg
-    /// program a video becomes numbered PNGs, and a warning. Throws Error(Usage), Error(Resources).
+    /// program a video becomes numbered PNGs, and a warning. `log` outlives this. Throws Error(Usage),
+    /// Error(Resources).
     RenderOutputs(const std::vector<std::string>& names, const OutputChoice& choice, double fps, MessageLog& log);
 
     /// Does the frame go into an EXR, so that its layers have to be there?
@@ -48,6 +49,7 @@ private:
     std::vector<Output> outputs_;
     OutputChoice choice_;
     double fps_;
+    MessageLog& log_;
     std::vector<std::string> files_;
 };
 

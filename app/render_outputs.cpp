@@ -94,7 +94,7 @@ std::string numberedName(const std::string& pattern, int64_t number, bool* hasNu
 
 RenderOutputs::RenderOutputs(const std::vector<std::string>& names, const OutputChoice& choice, double fps,
                              MessageLog& log)
-    : choice_(choice), fps_(fps) {
+    : choice_(choice), fps_(fps), log_(log) {
     for (const std::string& name : names) {
         Output output{name, lowerExtension(name), false, {}};
         numberedName(name, 0, &output.numbered);
@@ -157,7 +157,7 @@ void RenderOutputs::write(const FrameOutput& frame, const Document& document, co
             if (stateTextOf(name) != state) throwOtherState(name);
             continue;
         }
-        exportView(name, frame, document, choice_, state);
+        exportView(name, frame, document, choice_, state).warn(log_);
         if (output.video.empty()) files_.push_back(name);
     }
 }

@@ -50,8 +50,10 @@ inline constexpr const char* kStateKey = "lumiscope";
 std::string canonicalChannel(std::string_view name);
 
 /// Bytes of the file: single part, scan lines, ZIP, no creation date; the same for any number of threads.
-/// `halfColours` stores float channels whose letter is R, G, B or A as half (values beyond 65504 become infinite).
-std::vector<uint8_t> encodeExr(const ExrLayers& layers, bool halfColours = false);
+/// `halfColours` stores float channels whose letter is R, G, B or A as half. What is finite stays so: values beyond
+/// kMostHalf become it, and `clamped`, if given, receives how many did.
+inline constexpr float kMostHalf = 65504;
+std::vector<uint8_t> encodeExr(const ExrLayers& layers, bool halfColours = false, size_t* clamped = nullptr);
 void writeExr(const std::filesystem::path& path, const ExrLayers& layers, bool halfColours = false);
 
 /// Reads every flat image part: scan lines or tiles (level 0), any compression, subsampled channels repeated. Pixels of

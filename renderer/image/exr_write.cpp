@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 
 #include "base/error.h"
@@ -47,6 +48,10 @@ Imf::Header makeHeader(const ExrLayers& layers) {
     return header;
 }
 
+bool isBeyondHalf(float value) { return std::isfinite(value) && std::abs(value) > kMostHalf; }
+
+half clampedHalf(float value) { return half(isBeyondHalf(value) ? std::copysign(kMostHalf, value) : value); }
+
 }  // namespace
 
 void ExrByteWriter::write(const char bytes[], int count) {
@@ -56,13 +61,14 @@ void ExrByteWriter::write(const char bytes[], int count) {
     position_ = end;
 }
 
-std::vector<uint8_t> encodeExr(const ExrLayers& layers, bool halfColours) {
+std::vector<uint8_t> encodeExr(const ExrLayers& layers, bool halfColours, size_t* clamped) {
     assert(!layers.extent.empty() && !layers.channels.empty());
     const auto width = static_cast<size_t>(layers.extent.width);
     Imf::Header header = makeHeader(layers);
     Imf::FrameBuffer buffer;
     std::vector<std::vector<half>> halves;  // of the channels stored as half
     halves.reserve(layers.channels.size());
+    if (clamped) *clamped = 0;
     for (const auto& [name, channel] : layers.channels) {
         assert((channel.type == ExrType::Uint ? channel.ids.size() : channel.floats.size()) ==
                static_cast<size_t>(layers.extent.area()));
@@ -77,8 +83,10 @@ std::vector<uint8_t> encodeExr(const ExrLayers& layers, bool halfColours) {
             type = Imf::HALF;
             checkMemory("half channel " + name, channel.floats.size() * sizeof(half));
             std::vector<half>& converted = halves.emplace_back(channel.floats.size());
-            std::transform(channel.floats.begin(), channel.floats.end(), converted.begin(),
-                           [](float value) { return half(value); });
+            std::transform(channel.floats.begin(), channel.floats.end(), converted.begin(), clampedHalf);
+            if (clamped)
+                *clamped +=
+                    static_cast<size_t>(std::count_if(channel.floats.begin(), channel.floats.end(), isBeyondHalf));
             data = reinterpret_cast<const char*>(converted.data());
         } else {
             data = reinterpret_cast<const char*>(channel.floats.data());

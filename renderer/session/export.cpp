@@ -103,31 +103,44 @@ ExrLayers exportLayers(const FrameOutput& frame, const std::string& instance, co
 }
 
 std::vector<uint8_t> encodeView(const std::filesystem::path& name, const FrameOutput& frame, const ViewSettings& view,
-                                const BufferSelection& buffers, bool half, const std::string& state) {
+                                const BufferSelection& buffers, bool half, const std::string& state, size_t* clamped) {
     const std::string extension = lowerExtension(name);
-    if (extension == ".exr") return encodeExr(exportLayers(frame, view.module, buffers, state), half);
+    if (clamped) *clamped = 0;
+    if (extension == ".exr") return encodeExr(exportLayers(frame, view.module, buffers, state), half, clamped);
     if (extension != ".png")
         throwUsage({"cannot write this kind of file", name.string(), ".exr or .png", '"' + extension + '"'});
     DisplayInfo info;
     return encodePng(*drawView(frame, view, info), {{kStateKey, state}});
 }
 
-void writeView(const std::filesystem::path& path, const FrameOutput& frame, const ViewSettings& view,
-               const BufferSelection& buffers, bool half, const std::string& state) {
-    writeFileAtomically(path, encodeView(path, frame, view, buffers, half, state));
+void Written::warn(MessageLog& log) const {
+    if (clamped == 0) return;
+    log.warning(fmt::format("{}: {} {} beyond what half holds and became {}; a float EXR holds {}", path.string(),
+                            clamped, clamped == 1 ? "value was" : "values were", kMostHalf,
+                            clamped == 1 ? "it" : "them"));
 }
 
-void exportView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
-                const OutputChoice& choice, const std::string& state) {
-    const ViewSettings& view = document.view(choice.view);
-    writeView(path, frame, view, BufferSelection::parse(choice.buffers, view.module, "--buffers"), choice.half, state);
+Written writeView(const std::filesystem::path& path, const FrameOutput& frame, const ViewSettings& view,
+                  const BufferSelection& buffers, bool half, const std::string& state) {
+    Written written{path};
+    writeFileAtomically(path, encodeView(path, frame, view, buffers, half, state, &written.clamped));
+    return written;
 }
 
-std::filesystem::path exportNewView(const std::filesystem::path& path, const FrameOutput& frame,
-                                    const Document& document, const OutputChoice& choice, const std::string& state) {
+Written exportView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
+                   const OutputChoice& choice, const std::string& state) {
     const ViewSettings& view = document.view(choice.view);
     const BufferSelection buffers = BufferSelection::parse(choice.buffers, view.module, "--buffers");
-    return writeNewFile(path, encodeView(path, frame, view, buffers, choice.half, state));
+    return writeView(path, frame, view, buffers, choice.half, state);
+}
+
+Written exportNewView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
+                      const OutputChoice& choice, const std::string& state) {
+    const ViewSettings& view = document.view(choice.view);
+    const BufferSelection buffers = BufferSelection::parse(choice.buffers, view.module, "--buffers");
+    Written written;
+    written.path = writeNewFile(path, encodeView(path, frame, view, buffers, choice.half, state, &written.clamped));
+    return written;
 }
 
 }  // namespace lumi

@@ -3,6 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "base/messages.h"
 #include "image/exr.h"
 #include "session/frame_engine.h"
 
@@ -33,21 +34,30 @@ struct OutputChoice {
 ExrLayers exportLayers(const FrameOutput& frame, const std::string& instance, const BufferSelection& buffers,
                        const std::string& state);
 
+/// A file that was written: its name, and how many colours were beyond half and are clamped, see encodeExr().
+struct Written {
+    std::filesystem::path path;
+    size_t clamped = 0;
+    /// Says so in one line, if there are any.
+    void warn(MessageLog& log) const;
+};
+
 /// Writes what a view shows as .exr (linear, with the layers of `buffers`, colours as half if wanted) or .png (as
 /// shown). Throws Error(Usage) for other extensions.
-void writeView(const std::filesystem::path& path, const FrameOutput& frame, const ViewSettings& view,
-               const BufferSelection& buffers, bool half, const std::string& state);
+Written writeView(const std::filesystem::path& path, const FrameOutput& frame, const ViewSettings& view,
+                  const BufferSelection& buffers, bool half, const std::string& state);
 
-/// The bytes of such a file; `name` says which kind.
+/// The bytes of such a file; `name` says which kind. `clamped` as of encodeExr().
 std::vector<uint8_t> encodeView(const std::filesystem::path& name, const FrameOutput& frame, const ViewSettings& view,
-                                const BufferSelection& buffers, bool half, const std::string& state);
+                                const BufferSelection& buffers, bool half, const std::string& state,
+                                size_t* clamped = nullptr);
 
 /// The same of one of a document's views. `document` is the one that the frame was drawn from.
-void exportView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
-                const OutputChoice& choice, const std::string& state);
-/// The same over no other file: see writeNewFile(). Returns the name.
-std::filesystem::path exportNewView(const std::filesystem::path& path, const FrameOutput& frame,
-                                    const Document& document, const OutputChoice& choice, const std::string& state);
+Written exportView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
+                   const OutputChoice& choice, const std::string& state);
+/// The same over no other file: see writeNewFile().
+Written exportNewView(const std::filesystem::path& path, const FrameOutput& frame, const Document& document,
+                      const OutputChoice& choice, const std::string& state);
 
 /// Camera space to normalised device coordinates: x right, y up, both in [-1, 1] over the image.
 Mat4 ndcFromCamera(const CameraPose& camera);

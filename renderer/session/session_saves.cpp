@@ -29,11 +29,11 @@ void Session::Impl::saveView(const Work& work) {
     }
     runAside([this, path, isCapture, choice, frame, states = work.states, from = shownDocument](std::stop_token) {
         try {
-            std::filesystem::path written = path;
             const std::string state = states.json(choice.json());
-            if (isCapture) written = exportNewView(path, *frame, *from, choice, state);
-            else exportView(path, *frame, *from, choice, state);
-            log.info("Saved " + written.string());
+            const Written written = isCapture ? exportNewView(path, *frame, *from, choice, state)
+                                              : exportView(path, *frame, *from, choice, state);
+            written.warn(log);
+            log.info("Saved " + written.path.string());
         } catch (const std::exception& error) {
             log.error(error.what());
         }

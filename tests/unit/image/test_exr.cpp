@@ -93,6 +93,27 @@ TEST(Exr, HalfStoresColoursOnly) {
     EXPECT_EQ(read.channels.at("objectId").type, ExrType::Uint);
 }
 
+TEST(Exr, HalfKeepsFiniteValuesFinite) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<float> given{65504, -65504, 65505, -1e6f, 3e38f, kInfinity, -kInfinity, nan, 1.5f, 0};
+    Image image({10, 1}, 3);
+    for (int c = 0; c < 3; ++c)
+        for (int x = 0; x < 10; ++x) image.at(c, x, 0) = c == 1 ? given[static_cast<size_t>(x)] : 0.25f;
+    ExrLayers layers;
+    layers.add("", "RGB", image);
+    layers.add("", "Z", noiseImage({10, 1}, 1, 1e6f));
+    size_t clamped = 7;
+    const std::vector<float> read = decodeExr(encodeExr(layers, true, &clamped), "memory.exr").channels.at("G").floats;
+    EXPECT_EQ(clamped, 3u);
+    const std::vector<float> expected{65504, -65504, 65504, -65504, 65504, kInfinity, -kInfinity, nan, 1.5f, 0};
+    for (size_t i = 0; i < expected.size(); ++i) {
+        if (std::isnan(expected[i])) EXPECT_TRUE(std::isnan(read[i]));
+        else EXPECT_EQ(read[i], expected[i]) << given[i];
+    }
+    EXPECT_EQ(decodeExr(encodeExr(layers, false, &clamped), "memory.exr").channels.at("G").floats[4], 3e38f);
+    EXPECT_EQ(clamped, 0u);
+}
+
 TEST(Exr, BytesDoNotDependOnThreadsOrTime) {
     const ExrLayers layers = someLayers({123, 77});
     std::vector<std::string> digests;

@@ -70,6 +70,26 @@ TEST(Export, HalfIsForColoursOnly) {
     EXPECT_FALSE(layers.channels.count("position.X"));
 }
 
+TEST(Export, TellsWhatHalfDoesNotHold) {
+    TemporaryFolder folder;
+    const Document document(tinyScene());
+    FrameOutput frame = drawAll(document);
+    auto bright = std::make_shared<Image>(*frame.results.at("accumulate"));
+    bright->at(0, 3, 2) = 1e6f, bright->at(1, 4, 2) = -1e6f, bright->at(2, 5, 2) = kInfinity;
+    frame.results["accumulate"] = bright;
+    MessageLog log;
+    exportView(folder / "half.exr", frame, document, {0, "", true}, "{}").warn(log);
+    ASSERT_EQ(log.warnings().size(), 1u);
+    EXPECT_NE(log.warnings()[0].find("half.exr: 2 values were beyond"), std::string::npos) << log.warnings()[0];
+    EXPECT_EQ(readExr(folder / "half.exr").image("", "RGB").at(0, 3, 2), kMostHalf);
+    const Written again = exportNewView(folder / "half.exr", frame, document, {0, "", true}, "{}");
+    EXPECT_EQ(again.path, folder / "half-1.exr");
+    EXPECT_EQ(again.clamped, 2u);
+    exportView(folder / "float.exr", frame, document, {0, "", false}, "{}").warn(log);
+    exportView(folder / "picture.png", frame, document, {0, "", true}, "{}").warn(log);
+    EXPECT_EQ(log.warnings().size(), 1u);
+}
+
 TEST(Export, APngShowsTheViewAndHoldsTheState) {
     TemporaryFolder folder;
     Document document(tinyScene());
