@@ -51,24 +51,18 @@ Vec2 BaseBsdf::schlickAverage() const {
 /// Looked up once for all lobes of a direction.
 Vec2 BaseBsdf::schlickWhereUsed(const Vec3& w) const { return usesSchlick_ && w.z > 0 ? schlickAlbedo(w) : Vec2(1, 0); }
 
-/// What a rough boundary gives back of what it loses to second facets, for light from `w` on either side.
-float BaseBsdf::boundaryReturned(const Vec3& w) const {
-    if (!near_) return multipleBelow(schlickAlbedo({w.x, w.y, std::abs(w.z)}));
-    return (w.z > 0 ? near_ : far_)->returned(boundaryRow_, {ggx_.alpha, std::abs(w.z)});
-}
-
 /// What a facet does with light at this cosine.
 BaseBsdf::Facet BaseBsdf::facetAt(float cosTheta) const {
     Facet facet{f0_ + (Vec3(f90_) - f0_) * schlickWeight(cosTheta)};
     if (hasBoundary_) {
-        const float f = fresnelDielectric(std::min(cosTheta, 1.0f), eta_);
-        facet.reflected += boundaryTint_ * f;
-        facet.through = 1 - f;
+        const BoundarySums at = atBoundary(cosTheta);
+        facet.reflected += boundaryShare_ * fresnel_.reflected(1, at.exact.x, at.clear.x);
+        facet.through = fresnel_.through(at.exact.y, at.clear.y);
     }
     if (hasFilm_) {
         const Vec3 film = film_.reflectance(std::min(cosTheta, 1.0f));
         facet.reflected = facet.reflected * (1 - filmShare_) + filmReflecting_ * film;
-        facet.through += (1 - maxComponent(film) - facet.through) * filmShare_;
+        facet.through += (1 - specular_ * maxComponent(film) - facet.through) * filmShare_;
     }
     facet.reflectionChance = hasBoundary_ ? reflectionChance(facet.reflected, facet.through) : 1;
     return facet;
@@ -76,9 +70,10 @@ BaseBsdf::Facet BaseBsdf::facetAt(float cosTheta) const {
 
 LobeValue BaseBsdf::diffuse(const Vec3& wi, Vec2 schlick) const {
     if (wi.z <= 0 || probability_[kDiffuse] == 0) return {};
-    if (hasFilm_) return {diffuseScale_ * wi.z, pdfCosineHemisphere(wi.z)};
     const float below = std::max(0.0f, 1 - (glm::dot(schlick, Vec2(layerF0_, layerF90_)) + layerMultiple_));
-    return {diffuseScale_ * (below * wi.z), pdfCosineHemisphere(wi.z)};
+    Vec3 f = diffuseScale_ * (below * wi.z);
+    if (hasFilm_) f += diffuseUnderFilm_ * wi.z;
+    return {f, pdfCosineHemisphere(wi.z)};
 }
 
 /// `schlick` is schlickWhereUsed(wi).
@@ -256,9 +251,11 @@ void BaseBsdf::keep(bool diffuse, bool specular) {
     chooseProbabilities();
 }
 
-void BaseBsdf::prepare(float ior, bool transmits) {
+void BaseBsdf::prepare(float ior, bool transmits, bool clear) {
     SchlickAlbedo::get();
-    if (transmits) DielectricAlbedo::get(DielectricAlbedo::roundedIor(ior), true);
+    if (!transmits) return;
+    DielectricAlbedo::get(DielectricAlbedo::roundedIor(ior), true);
+    if (clear) DielectricAlbedo::get(DielectricAlbedo::roundedIor(ior), true, true);
 }
 
 }  // namespace lumi

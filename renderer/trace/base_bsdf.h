@@ -1,5 +1,6 @@
 #pragma once
 #include "trace/albedo_table.h"
+#include "trace/boundary_fresnel.h"
 #include "trace/bsdf_inputs.h"
 #include "trace/dielectric_albedo.h"
 #include "trace/ggx.h"
@@ -13,11 +14,12 @@ namespace lumi {
 ///     f = rho/pi (1 - E(wo)) (1 - E(wi)) / (1 - Eavg)  [Kelemen & Szirmay-Kalos 2001],
 ///     rho = baseColor (1-metallic)(1-transmission);
 ///   specular reflection: GGX with visible normals [Heitz 2018], Schlick Fresnel from ior, specular, specularColor and
-///     (metals) baseColor; exact dielectric Fresnel where the base transmits. What facets scatter twice or more can be
-///     added to the Schlick part as a broad lobe m (1 - E1(wo)) (1 - E1(wi)) / (pi (1 - E1avg)) [Kulla & Conty 2017,
-///     "Revisiting Physically Based Shading at Imageworks"], E1 the albedo of facets that reflect everything,
+///     (metals) baseColor; where the base transmits, the exact dielectric term in its place, weighted alike on both
+///     sides (see BoundaryFresnel). What facets scatter twice or more can be added to the Schlick part as a broad lobe
+///     m (1 - E1(wo)) (1 - E1(wi)) / (pi (1 - E1avg)) [Kulla & Conty 2017, "Revisiting Physically Based Shading at
+///     Imageworks"], E1 the albedo of facets that reflect everything,
 ///     m = Favg^2 E1avg / (1 - Favg (1 - E1avg)). A thin film replaces its share of all Fresnel terms, seen from
-///     outside; the diffuse lobe under it is 1 - E(wo) alone, without the factor of wi, and is not reciprocal;
+///     outside; that share of the diffuse lobe is 1 - E(wo) alone, without the factor of wi, and is not reciprocal;
 ///   specular transmission: rough dielectric [Walter 2007] for solids, mirrored-reflection lobe for thin walls. What
 ///     facets of a boundary scatter twice or more is added on both sides in the same way, l the loss of each side:
 ///     t l_near(wo) l_far(wi) / (pi l_far avg) goes through and the rest comes back, t = (1 - Favg) min(1, l_far avg /
@@ -48,6 +50,8 @@ public:
     Vec3 evaluate(const Vec3& wi, Lobe lobe) const;
     /// True if every lobe is a delta: next-event estimation cannot contribute.
     bool isDelta() const;
+    /// Is what it transmits all straight on?
+    bool isWindow() const { return deltaTransmission_ && !solid_ && hasBoundary_; }
     /// Chance that sample() draws this lobe, lost samples included: exact for deltas and the diffuse lobe.
     float probability(Lobe lobe) const;
 
@@ -55,8 +59,9 @@ public:
     void keep(bool diffuse, bool specular);
 
     /// Makes the albedo tables that materials of this ior need (some 200 ms the first time), so that no path waits.
-    /// `transmits`: also those of dielectric boundaries. Any thread.
-    static void prepare(float ior, bool transmits);
+    /// `transmits`: also those of dielectric boundaries; `clear`: and of solid ones whose specular weight is below 1.
+    /// Any thread.
+    static void prepare(float ior, bool transmits, bool clear);
 
 private:
     static constexpr float kMinLobeShare = 0.05f;
@@ -66,16 +71,30 @@ private:
         float through = 0;           ///< share that a dielectric boundary lets through
         float reflectionChance = 1;  ///< of a specular sample at this facet
     };
+    /// What an exact and a clear boundary reflect and let through, see BoundaryFresnel.
+    struct BoundarySums {
+        Vec2 exact{0}, clear{0};
+        explicit BoundarySums(float = 0) {}
+        BoundarySums(Vec2 e, Vec2 c) : exact(e), clear(c) {}
+        BoundarySums& operator+=(const BoundarySums& o) { return exact += o.exact, clear += o.clear, *this; }
+        friend BoundarySums operator*(float w, const BoundarySums& s) { return {w * s.exact, w * s.clear}; }
+    };
+    /// Tables of a rough solid, seen from one side.
+    struct BoundaryTables {
+        const DielectricAlbedo *exact = nullptr, *clear = nullptr;
+    };
 
     void setFacets(const BsdfInputs& inputs, float roughness);
     void setFilm(const LayerInputs& layers, const Vec3& baseF0, float reflecting);
     void setMultiple(float share);
-    void setBoundaryMultiple(const Vec2& reflectedTransmitted);
+    void setBoundaryMultiple();
     void setDiffuse(const Vec3& rho, float f0, float f90);
-    void setDiffuseUnderFilm(const Vec3& rho, float specular);
+    void setDiffuseUnderFilm(const Vec3& rho);
+    void setBoundary(float ior, const Vec3& specularColor, bool inside);
     void setSpecular(bool inside, bool multiple);
-    Vec2 boundaryAlbedo(bool inside) const;
-    Vec2 stretchedBoundaryAlbedo() const;
+    BoundarySums boundaryAlbedo(bool inside) const;
+    BoundarySums stretchedBoundaryAlbedo() const;
+    BoundarySums atBoundary(float cosTheta) const;
     Vec2 schlickTowards(bool dividedWell) const;
     void applyFilm();
     void chooseProbabilities();
@@ -85,6 +104,7 @@ private:
     static float multipleBelow(Vec2 schlick) { return std::max(0.0f, 1 - schlick.x - schlick.y); }
     Vec2 schlickWhereUsed(const Vec3& w) const;
     float boundaryReturned(const Vec3& w) const;
+    float boundaryMean(const BoundaryTables& side) const;
     Facet facetAt(float cosTheta) const;
 
     LobeValue diffuse(const Vec3& wi, Vec2 schlick) const;
@@ -113,12 +133,15 @@ private:
     bool smooth_ = false;       ///< reflection is a delta
     bool deltaTransmission_ = false;
     bool solid_ = false;
-    bool hasBoundary_ = false;                ///< the base transmits: the exact Fresnel term takes part
-    const DielectricAlbedo* near_ = nullptr;  ///< of a rough solid, on wo's side
-    const DielectricAlbedo* far_ = nullptr;
-    RoughnessRow boundaryRow_;  ///< of their tables
+    bool hasBoundary_ = false;   ///< the base transmits: the exact Fresnel term takes part
+    BoundaryFresnel fresnel_;    ///< as weighted
+    float boundaryShare_ = 0;    ///< of the material
+    BoundaryTables near_, far_;  ///< wo's side is near
+    RoughnessRow boundaryRow_;   ///< of their tables
+    float specular_ = 1;         ///< weight of the layer that reflects, of boundaries too
 
-    Vec3 diffuseScale_{0};              ///< rho (1 - E(wo)) / (1 - Eavg) / pi
+    Vec3 diffuseScale_{0};              ///< rho (1 - E(wo)) / (1 - Eavg) / pi where no film lies
+    Vec3 diffuseUnderFilm_{0};          ///< rho (1 - E(wo)) / pi where one does
     float layerF0_ = 0, layerF90_ = 0;  ///< of the dielectric layer over the diffuse base
     float layerMultiple_ = 0;           ///< m of that layer
     Vec3 multiple_{0};                  ///< m of reflection, its share of the material multiplied in
@@ -129,13 +152,13 @@ private:
     Vec3 throughAlbedo_{0};   ///< and of the transmitted part
     Vec3 f0_{0};              ///< Schlick part of reflection, its shares of the material multiplied in
     float f90_ = 0;
-    Vec3 boundaryTint_{0};      ///< weight of the exact Fresnel term in reflection
-    Vec3 transmissionTint_{0};  ///< and of what it lets through
+    Vec3 transmissionTint_{0};  ///< weight of what a boundary lets through
 
     bool hasFilm_ = false;
     ThinFilm film_;
     float filmShare_ = 0;       ///< of the surface
     float filmReflecting_ = 0;  ///< share of the material that reflects under the film
+    float filmMultiple_ = 0;    ///< m of the layer under the film
     Vec3 filmAlbedo_{0};        ///< mean reflectance of the film over what facets reflect towards wo
 
     Vec3 albedo_[kSlots] = {Vec3(0), Vec3(0), Vec3(0)};

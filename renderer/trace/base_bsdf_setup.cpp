@@ -20,7 +20,6 @@ constexpr float kLeastAnisotropy = 1e-3f;
 
 using NarrowLattice = FibonacciLattice<34, 21>;
 using WideLattice = FibonacciLattice<144, 89>;
-using WidestLattice = FibonacciLattice<987, 610>;
 
 /// To [0, limit]; not a number becomes 0.
 Vec3 nonNegative(const Vec3& c, float limit) { return saturate(c / limit) * limit; }
@@ -33,6 +32,10 @@ Vec3 usableDirection(Vec3 wo) {
 
 /// m of the class's comment.
 float manyBounces(float favg, float eavg) { return sqr(favg) * eavg / (1 - favg * (1 - eavg)); }
+/// F0 of KHR_materials_specular before its weight.
+Vec3 dielectricF0(float ior, const Vec3& specularColor) {
+    return glm::min(sqr((ior - 1) / (ior + 1)) * specularColor, Vec3(1));
+}
 /// Mean of Schlick's term over the hemisphere weighted by the cosine.
 float schlickMean(float f0, float f90) { return f0 + (f90 - f0) / 21; }
 
@@ -56,44 +59,37 @@ struct FilmSums {
 BaseBsdf::BaseBsdf(const BsdfInputs& inputs, const Vec3& wo) : wo_(usableDirection(wo)) {
     const float metallic = saturate(inputs.metallic), transmitting = saturate(inputs.transmission);
     const float opaque = (1 - metallic) * (1 - transmitting), boundary = (1 - metallic) * transmitting;
-    const float specular = saturate(inputs.specular);
     const float ior = inputs.ior >= 0 ? std::min(inputs.ior, 1e6f) : 1.5f;
     const Vec3 baseColor = saturate(inputs.baseColor), specularColor = nonNegative(inputs.specularColor, 1e4f);
 
     setFacets(inputs, saturate(inputs.roughness));
     solid_ = inputs.solid;
-    if (boundary < 1 || !solid_ || inputs.layered) schlickO_ = schlickTowards(opaque > 0);
-
-    const Vec3 layerF0 = glm::min(sqr((ior - 1) / (ior + 1)) * specularColor, Vec3(1)) * specular;
-    f0_ = opaque * layerF0 + metallic * baseColor;
-    f90_ = opaque * specular + metallic;
+    specular_ = saturate(inputs.specular);
     const bool inside = solid_ && !inputs.entering;
+    boundaryShare_ = boundary;
+    hasBoundary_ = boundary > 0;
+    if (hasBoundary_) setBoundary(ior, specularColor, inside);
+    if (boundary < 1 || !solid_ || inputs.layered || fresnel_.usesAll()) schlickO_ = schlickTowards(opaque > 0);
+
+    const Vec3 layerF0 = dielectricF0(ior, specularColor) * specular_;
+    f0_ = opaque * layerF0 + metallic * baseColor;
+    f90_ = opaque * specular_ + metallic;
     if (inputs.layered && inputs.layers.iridescence > 0 && !inside)
-        setFilm(inputs.layers, (1 - metallic) * layerF0 + metallic * baseColor,
-                opaque * specular + metallic + boundary);
+        setFilm(inputs.layers, (1 - metallic) * layerF0 + metallic * baseColor, (1 - metallic) * specular_ + metallic);
     const bool multiple = inputs.multipleScattering && !smooth_;
     usesSchlick_ = opaque > 0 || (multiple && metallic > 0);
     if (usesSchlick_ || (multiple && boundary > 0)) schlickMean_ = schlickAverage();
     if (multiple) {
         const float eavg = schlickMean_.x + schlickMean_.y;
-        layerMultiple_ = manyBounces(schlickMean(maxComponent(layerF0), specular), eavg);
+        layerMultiple_ = manyBounces(schlickMean(maxComponent(layerF0), specular_), eavg);
         setMultiple(opaque + metallic);
     }
 
-    hasBoundary_ = boundary > 0;
-    if (hasBoundary_) {
-        const float rounded = DielectricAlbedo::roundedIor(ior);
-        eta_ = inside ? 1 / rounded : rounded;
-        // Total reflection knows no tint, so the inside of a solid has none.
-        boundaryTint_ = inside ? Vec3(boundary) : boundary * glm::min(specular * specularColor, Vec3(1));
-        transmissionTint_ = boundary * (solid_ ? glm::sqrt(baseColor) : baseColor);
-    }
+    transmissionTint_ = boundary * (solid_ ? glm::sqrt(baseColor) : baseColor);
     setSpecular(inside, inputs.multipleScattering);
     if (hasFilm_) applyFilm();
-    if (opaque > 0) {
-        if (hasFilm_) setDiffuseUnderFilm(opaque * baseColor, specular);
-        else setDiffuse(opaque * baseColor, maxComponent(layerF0), specular);
-    }
+    if (opaque > 0) setDiffuse(opaque * baseColor, maxComponent(layerF0), specular_);
+    if (opaque > 0 && hasFilm_) setDiffuseUnderFilm(opaque * baseColor);
     chooseProbabilities();
 }
 
@@ -110,6 +106,14 @@ void BaseBsdf::setFacets(const BsdfInputs& inputs, float roughness) {
     lambdaO_ = ggx_.lambda(wo_);
 }
 
+void BaseBsdf::setBoundary(float ior, const Vec3& specularColor, bool inside) {
+    const float rounded = DielectricAlbedo::roundedIor(ior);
+    eta_ = inside ? 1 / rounded : rounded;
+    // What tables cannot bend any more still reflects as its index says.
+    if (std::abs(ior - rounded) < 1e-3f) ior = rounded;
+    fresnel_ = BoundaryFresnel(dielectricF0(rounded, Vec3(1)).x, dielectricF0(ior, specularColor), specular_);
+}
+
 void BaseBsdf::setFilm(const LayerInputs& layers, const Vec3& baseF0, float reflecting) {
     hasFilm_ = true;
     filmShare_ = saturate(layers.iridescence);
@@ -123,41 +127,13 @@ void BaseBsdf::setMultiple(float share) {
     if (!(share > 0)) return;
     const float eavg = schlickMean_.x + schlickMean_.y;
     const Vec3 film = hasFilm_ ? film_.averageReflectance() : Vec3(0);
+    filmMultiple_ = manyBounces(specular_ * maxComponent(film), eavg);
     for (int c = 0; c < 3; ++c) {
         const float bare = schlickMean(f0_[c], f90_) / share;
         multiple_[c] = share * manyBounces(std::min(bare + (film[c] * f90_ / share - bare) * filmShare_, 1.0f), eavg);
     }
     multipleAlbedo_ = multiple_ * std::max(0.0f, 1 - schlickO_.x - schlickO_.y);
     multipleScale_ = multipleAlbedo_ * (kInvPi / std::max(1 - eavg, kLeastLoss));
-}
-
-/// Gives a rough boundary what single scattering loses: to each side in proportion to what its mean Fresnel term
-/// leaves, held where reciprocity wants it. With l the losses of both sides and t the shares that go through,
-/// t_near l_near = n^2 t_far l_far; (1 - Favg) obeys that with n^2 alone, the lesser loss of both adds the rest.
-void BaseBsdf::setBoundaryMultiple(const Vec2& once) {
-    float lost, mean, meanFar, fresnel;
-    if (near_) {
-        lost = near_->returned(boundaryRow_, {ggx_.alpha, wo_.z});
-        mean = near_->averageReturned(boundaryRow_, ggx_.alpha);
-        meanFar = far_->averageReturned(boundaryRow_, ggx_.alpha);
-        fresnel = near_->averageFresnel();
-    } else {
-        lost = 1 - once.x - once.y;
-        mean = meanFar = std::max(1 - schlickMean_.x - schlickMean_.y, kLeastLoss);
-        fresnel = DielectricAlbedo::get(eta_, true).averageFresnel();
-    }
-    const float through = (1 - fresnel) * std::min(1.0f, meanFar / mean);
-    Vec3 reflected(1 - through), passed(through);
-    if (hasFilm_) {
-        const Vec3 film = film_.averageReflectance();
-        reflected += (film - reflected) * filmShare_;
-        passed *= 1 - filmShare_ + filmShare_ * (1 - maxComponent(film)) / std::max(1 - fresnel, 1e-6f);
-    }
-    const Vec3 above = boundaryTint_ * reflected * lost;
-    throughAlbedo_ = transmissionTint_ * passed * lost;
-    multipleAlbedo_ += above;
-    boundaryScale_ = above * (kInvPi / mean);
-    throughScale_ = throughAlbedo_ * (kInvPi / meanFar);
 }
 
 void BaseBsdf::setDiffuse(const Vec3& rho, float f0, float f90) {
@@ -169,14 +145,14 @@ void BaseBsdf::setDiffuse(const Vec3& rho, float f0, float f90) {
         albedo_[kDiffuse] * (kInvPi / std::max(1 - (glm::dot(schlickMean_, fresnel) + layerMultiple_), 1e-4f));
 }
 
-void BaseBsdf::setDiffuseUnderFilm(const Vec3& rho, float specular) {
-    const Vec2 schlick = schlickO_;
-    const float bare = glm::dot(schlick, Vec2(maxComponent(f0_), f90_));
-    const float film = kFilmMargin * specular * maxComponent(filmAlbedo_) * (schlick.x + schlick.y);
-    const float many = std::max(layerMultiple_, maxComponent(multiple_)) * (1 - schlick.x - schlick.y);
-    layerMultiple_ = 0;
-    albedo_[kDiffuse] = rho * std::max(0.0f, 1 - (bare + (film - bare) * filmShare_ + many));
-    diffuseScale_ = albedo_[kDiffuse] * kInvPi;
+/// Exchanges the film's share of the diffuse lobe.
+void BaseBsdf::setDiffuseUnderFilm(const Vec3& rho) {
+    const float once = schlickO_.x + schlickO_.y;
+    const float film = kFilmMargin * specular_ * maxComponent(filmAlbedo_) * once + filmMultiple_ * (1 - once);
+    const Vec3 under = rho * (filmShare_ * std::max(0.0f, 1 - film));
+    diffuseUnderFilm_ = under * kInvPi;
+    diffuseScale_ *= 1 - filmShare_;
+    albedo_[kDiffuse] = albedo_[kDiffuse] * (1 - filmShare_) + under;
 }
 
 void BaseBsdf::setSpecular(bool inside, bool multiple) {
@@ -184,50 +160,19 @@ void BaseBsdf::setSpecular(bool inside, bool multiple) {
     deltaTransmission_ = smooth_ || (hasBoundary_ && solid_ && ggx_.alpha * std::abs(eta_ - 1) < kDeltaRefraction);
     if (!hasBoundary_) return;
     boundaryRow_ = RoughnessRow(std::sqrt(ggx_.alpha), DielectricAlbedo::kRows);
-    if (solid_ && !deltaTransmission_ && !ggx_.isAnisotropic()) {
+    const bool tabled = solid_ && !deltaTransmission_ && !ggx_.isAnisotropic();
+    if (tabled) {
         const float ior = inside ? 1 / eta_ : eta_;
-        near_ = &DielectricAlbedo::get(ior, !inside), far_ = &DielectricAlbedo::get(ior, inside);
+        near_.exact = &DielectricAlbedo::get(ior, !inside), far_.exact = &DielectricAlbedo::get(ior, inside);
+        if (fresnel_.usesClear())
+            near_.clear = &DielectricAlbedo::get(ior, !inside, true),
+            far_.clear = &DielectricAlbedo::get(ior, inside, true);
     }
-    const Vec2 once = boundaryAlbedo(inside);
-    albedo_[kReflection] += boundaryTint_ * once.x;
-    albedo_[kTransmission] = transmissionTint_ * once.y;
+    const BoundarySums once = boundaryAlbedo(inside);
+    albedo_[kReflection] += boundaryShare_ * fresnel_.reflected(schlickO_.x + schlickO_.y, once.exact.x, once.clear.x);
+    albedo_[kTransmission] = transmissionTint_ * fresnel_.through(once.exact.y, once.clear.y);
     // Stretched facets of a solid have no table of losses: they keep to single scattering.
-    const bool tabled = near_ || !solid_;
-    if (multiple && !deltaTransmission_ && tabled) setBoundaryMultiple(once);
-}
-
-/// What the boundary reflects and transmits of light that meets one facet.
-Vec2 BaseBsdf::boundaryAlbedo(bool inside) const {
-    if (smooth_) {
-        const float reflected = fresnelDielectric(wo_.z, eta_);
-        return {reflected, 1 - reflected};
-    }
-    Vec2 once;
-    if (ggx_.isAnisotropic()) {
-        once = stretchedBoundaryAlbedo();
-    } else {
-        // The table of losses is the better one.
-        const float most = near_ ? 1 - near_->lost(boundaryRow_, {ggx_.alpha, wo_.z}) : schlickO_.x + schlickO_.y;
-        once.x =
-            std::min(DielectricAlbedo::get(inside ? 1 / eta_ : eta_, !inside).reflected(boundaryRow_, wo_.z), most);
-        once.y = most - once.x;
-    }
-    if (deltaTransmission_) return {once.x, 1 - once.x};
-    // A thin wall passes on in the mirrored direction what its outer face does not reflect.
-    return solid_ ? once : Vec2(once.x, std::max(0.0f, schlickO_.x + schlickO_.y - once.x));
-}
-
-/// The same of stretched facets, by quadrature; total reflection makes a kink, which wants a finer one.
-Vec2 BaseBsdf::stretchedBoundaryAlbedo() const {
-    const auto atFacet = [&](const Vec3& h) {
-        const float f = fresnelDielectric(std::min(glm::dot(wo_, h), 1.0f), eta_);
-        const float reflected = f * reflectedShare(ggx_, wo_, lambdaO_, h);
-        Vec3 wi;
-        if (!solid_ || f == 1 || !refract(wo_, h, eta_, wi) || wi.z >= 0) return Vec2(reflected, 0);
-        return Vec2(reflected, (1 - f) * (1 + lambdaO_) * maskingBothSides(lambdaO_, ggx_.lambda(wi)));
-    };
-    return eta_ < 1 ? meanOverVisibleNormals<WidestLattice>(ggx_, wo_, atFacet)
-                    : meanOverVisibleNormals<WideLattice>(ggx_, wo_, atFacet);
+    if (multiple && !deltaTransmission_ && (tabled || !solid_)) setBoundaryMultiple();
 }
 
 /// Albedo towards wo under Schlick's term. The table of stretched facets knows its sum better than how it divides,
@@ -251,8 +196,9 @@ void BaseBsdf::applyFilm() {
         sums.all = share;
         if (!hasBoundary_) return sums;
         const float passed = solid_ ? 1 : share;
-        sums.through = passed * (1 - maxComponent(reflectance));
-        sums.bareThrough = passed * (1 - fresnelDielectric(std::min(cosTheta, 1.0f), eta_));
+        const BoundarySums bare = atBoundary(cosTheta);
+        sums.through = passed * (1 - specular_ * maxComponent(reflectance));
+        sums.bareThrough = passed * fresnel_.through(bare.exact.y, bare.clear.y);
         return sums;
     };
     const FilmSums sums =

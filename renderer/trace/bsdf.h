@@ -29,6 +29,8 @@ public:
     Vec3 evaluate(const Vec3& wi, Lobe lobe) const;
     /// True if every lobe is a delta: next-event estimation cannot contribute.
     bool isDelta() const;
+    /// Does what it transmits go straight on, as through a pane?
+    bool isWindow() const { return base_.isWindow(); }
     /// Chance that sample() draws this lobe, lost samples included: exact for deltas, layers and the diffuse lobe.
     float probability(Lobe lobe) const;
 
@@ -36,8 +38,9 @@ public:
     void keep(bool diffuse, bool specular);
 
     /// Makes the albedo tables that materials of this ior need (some 200 ms the first time), so that no path waits.
-    /// `transmits`: also those of dielectric boundaries. Any thread.
-    static void prepare(float ior, bool transmits) { BaseBsdf::prepare(ior, transmits); }
+    /// `transmits`: also those of dielectric boundaries; `clear`: and of solid ones whose specular weight is below 1.
+    /// Any thread.
+    static void prepare(float ior, bool transmits, bool clear) { BaseBsdf::prepare(ior, transmits, clear); }
     /// And those of layers.
     static void prepareLayers(bool sheen, bool anisotropy);
 

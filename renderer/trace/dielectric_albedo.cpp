@@ -30,12 +30,18 @@ float bilinear(const std::array<std::array<float, Columns>, Rows>& table, Roughn
     return a + (b - a) * at.fraction;
 }
 
+/// Share of light that a facet reflects.
+float reflectance(float cosTheta, float eta, bool clear) {
+    const float f = fresnelDielectric(std::min(cosTheta, 1.0f), eta);
+    return clear && (eta > 1 || f < 1) ? 0 : f;
+}
+
 /// What neither leaves by reflection nor by refraction, of light that meets facets seen from `wo`.
 template <class Points>
-float lostBy(const Ggx& ggx, const Vec3& wo, float eta) {
+float lostBy(const Ggx& ggx, const Vec3& wo, float eta, bool clear) {
     const float lambdaO = ggx.lambda(wo);
     return meanOverVisibleNormals<Points>(ggx, wo, [&](const Vec3& h) {
-        const float f = fresnelDielectric(std::min(glm::dot(wo, h), 1.0f), eta);
+        const float f = reflectance(glm::dot(wo, h), eta, clear);
         float kept = f * reflectedShare(ggx, wo, lambdaO, h);
         Vec3 wi;
         if (f < 1 && refract(wo, h, eta, wi) && wi.z < 0)
@@ -59,14 +65,14 @@ float fresnelMean(float eta) {
 
 }  // namespace
 
-DielectricAlbedo::DielectricAlbedo(float eta) {
+DielectricAlbedo::DielectricAlbedo(float eta, bool clear) : clear_(clear) {
     if (eta < 1) {
         cosCritical_ = std::sqrt(1 - eta * eta);
         criticalColumn_ = (kColumns - 1) / 2;
         invCritical_ = 1 / cosCritical_;
         invBeyond_ = 1 / (eta * eta);
     }
-    averageFresnel_ = fresnelMean(eta);
+    averageFresnel_ = clear ? std::max(0.0f, 1 - eta * eta) : fresnelMean(eta);
     tabulateReflected(eta);
     tabulateLost(eta);
 }
@@ -78,7 +84,7 @@ void DielectricAlbedo::tabulateReflected(float eta) {
             const Vec3 wo = directionAt(cosineAt(static_cast<float>(column)));
             const float lambdaO = ggx.lambda(wo);
             const auto byFacet = [&](const Vec3& h) {
-                return fresnelDielectric(std::min(glm::dot(wo, h), 1.0f), eta) * reflectedShare(ggx, wo, lambdaO, h);
+                return reflectance(glm::dot(wo, h), eta, clear_) * reflectedShare(ggx, wo, lambdaO, h);
             };
             // The kink at the critical angle wants a finer grid.
             reflected_[static_cast<size_t>(row)][static_cast<size_t>(column)] =
@@ -89,14 +95,16 @@ void DielectricAlbedo::tabulateReflected(float eta) {
 }
 
 void DielectricAlbedo::tabulateLost(float eta) {
-    margin_ = eta < 1 ? 1.5e-3f : 5e-4f;
+    // Where total reflection begins is a kink, and of a clear boundary a step.
+    margin_ = eta >= 1 ? 5e-4f : clear_ ? 5e-3f : 1.5e-3f;
     for (int row = 0; row < kRows; ++row) {
         const Ggx ggx{sqr(RoughnessRow::roughnessOf(row, kRows))};
         for (int column = 0; column < kLossColumns; ++column) {
             const float c = FacetView::cosineAt(static_cast<float>(column) / (kLossColumns - 1), ggx.alpha);
             const Vec3 wo = directionAt(c);
             lost_[static_cast<size_t>(row)][static_cast<size_t>(column)] =
-                std::max(0.0f, eta < 1 ? lostBy<FinestLattice>(ggx, wo, eta) : lostBy<FineLattice>(ggx, wo, eta));
+                std::max(0.0f, eta < 1 ? lostBy<FinestLattice>(ggx, wo, eta, clear_)
+                                       : lostBy<FineLattice>(ggx, wo, eta, clear_));
         }
     }
     for (int row = 0; row < kMeanRows; ++row) {
@@ -146,10 +154,11 @@ constexpr int kIorSteps = 1024, kMinIor = kIorSteps / 4, kMaxIor = kIorSteps * 4
 
 struct BothSides {
     DielectricAlbedo entering, leaving;
-    explicit BothSides(float ior) : entering(ior), leaving(1 / ior) {}
+    BothSides(float ior, bool clear) : entering(ior, clear), leaving(1 / ior, clear) {}
 };
 
-std::array<std::atomic<const BothSides*>, kMaxIor - kMinIor + 1> tables{};
+using Slots = std::array<std::atomic<const BothSides*>, kMaxIor - kMinIor + 1>;
+Slots tables{}, clearTables{};
 
 int stepOf(float ior) {
     return std::clamp(static_cast<int>(std::lround(std::clamp(ior, 0.0f, 8.0f) * kIorSteps)), kMinIor, kMaxIor);
@@ -159,13 +168,13 @@ int stepOf(float ior) {
 
 float DielectricAlbedo::roundedIor(float ior) { return static_cast<float>(stepOf(ior)) / kIorSteps; }
 
-const DielectricAlbedo& DielectricAlbedo::get(float ior, bool entering) {
-    auto& slot = tables[static_cast<size_t>(stepOf(ior) - kMinIor)];
+const DielectricAlbedo& DielectricAlbedo::get(float ior, bool entering, bool clear) {
+    auto& slot = (clear ? clearTables : tables)[static_cast<size_t>(stepOf(ior) - kMinIor)];
     const BothSides* table = slot.load(std::memory_order_acquire);
     if (table == nullptr) {
         // Threads that meet a new index together each make the table, and the first to finish is believed: a lock
         // here could be waited for by a worker that the maker itself needs.
-        auto made = std::make_unique<BothSides>(roundedIor(ior));
+        auto made = std::make_unique<BothSides>(roundedIor(ior), clear);
         if (slot.compare_exchange_strong(table, made.get(), std::memory_order_acq_rel)) table = made.release();
     }
     return entering ? table->entering : table->leaving;

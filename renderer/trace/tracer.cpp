@@ -133,7 +133,8 @@ void Tracer::bind(std::shared_ptr<const PosedScene> posed, std::stop_token stop)
     if (attachedAnew && byteCount() >= kManyBytes) gatherAllOnHugePages(kGatherSeconds);
     parallelFor(static_cast<int64_t>(scene.tables.materials.size()), [&](int64_t i) {
         const MaterialRecord& material = scene.tables.materials[static_cast<size_t>(i)];
-        Bsdf::prepare(material.ior, material.transmission > 0);
+        const bool weighted = material.specular < 1 || (material.textures & MaterialRecord::kSpecular) != 0;
+        Bsdf::prepare(material.ior, material.transmission > 0, material.solid && weighted);
         if (material.layered) Bsdf::prepareLayers(material.source->hasSheen(), material.source->anisotropy > 0);
     });
 }

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -116,6 +117,37 @@ TEST(Layers, WhiteStaysWhite) {
         const Bsdf bsdf(inputs, fromAngles(c, 0));
         EXPECT_NEAR(bsdf.albedo(Lobe::Diffuse).x + bsdf.specularAlbedo().x, 1, 1e-4f) << c;
     }
+}
+
+// The least film is nearly none, for every base and where light and eye graze.
+TEST(Layers, FilmBeginsWithoutAStep) {
+    const Vec3 wo = fromAngles(std::cos(radians(85)), 0);
+    for (const float transmission : {0.0f, 0.5f, 1.0f})
+        for (const float metallic : {0.0f, 0.5f})
+            for (const float specular : {1.0f, 0.4f})
+                for (const float degrees : {85.0f, 20.0f}) {
+                    BsdfInputs inputs;
+                    inputs.transmission = transmission, inputs.metallic = metallic, inputs.specular = specular;
+                    inputs.layered = inputs.multipleScattering = true;
+                    inputs.layers.iridescenceThickness = 400;
+                    const Bsdf bare(inputs, wo);
+                    inputs.layers.iridescence = 1e-4f;
+                    const Bsdf filmed(inputs, wo);
+                    const Vec3 wi = fromAngles(std::cos(radians(degrees)), 2);
+                    const std::string name = fmt::format("transmission {}, metallic {}, specular {}, light at {}",
+                                                         transmission, metallic, specular, degrees);
+                    for (const Lobe lobe : {Lobe::Diffuse, Lobe::SpecularReflection, Lobe::SpecularTransmission})
+                        for (int c = 0; c < 3; ++c) {
+                            const float albedo = bare.albedo(lobe)[c], value = bare.evaluate(wi, lobe)[c];
+                            EXPECT_NEAR(filmed.albedo(lobe)[c], albedo, 0.002f * albedo) << name;
+                            EXPECT_NEAR(filmed.evaluate(wi, lobe)[c], value, 0.002f * value) << name;
+                        }
+                    for (const float share : {1e-4f, 0.3f, 1.0f}) {
+                        inputs.layers.iridescence = share;
+                        const Bsdf some(inputs, wo);
+                        EXPECT_LE(maxComponent(some.albedo(Lobe::Diffuse) + some.specularAlbedo()), 1 + 1e-5f) << name;
+                    }
+                }
 }
 
 // With nothing on it a layered material is the plain one to the last bit.

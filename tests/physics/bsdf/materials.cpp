@@ -34,6 +34,14 @@ const std::vector<NamedMaterial>& materials() {
         add("bubble from outside", [&](BsdfInputs& i) { i.transmission = 1, i.solid = true, i.ior = 0.75f; });
         add("tinted half glass",
             [&](BsdfInputs& i) { i.transmission = 0.5f, i.solid = true, i.baseColor = red, i.ior = 1.33f; });
+        for (const bool entering : {true, false})
+            add(entering ? "weak red glass from outside" : "weak red glass from inside", [&](BsdfInputs& i) {
+                i.transmission = 1, i.solid = true, i.entering = entering;
+                i.specular = 0.5f, i.specularColor = Vec3(1, 0.2f, 0.2f), i.multipleScattering = true;
+            });
+        add("weak thin wall of a strong colour", [&](BsdfInputs& i) {
+            i.transmission = 0.9f, i.specular = 0.5f, i.specularColor = Vec3(10, 10, 4), i.multipleScattering = true;
+        });
         for (const char* name :
              {"white metal", "gold", "white plastic", "thin wall", "tinted thin wall", "glass from outside",
               "glass from inside", "bubble from outside", "tinted half glass"}) {
