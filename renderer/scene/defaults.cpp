@@ -100,7 +100,7 @@ void traceInstance(const NodePose& pose, PosedSkins& skins, const Instance& inst
             joints);
     }
     const std::vector<Vec3>& positions = mesh.deforms() ? deformed.positions : mesh.positions;
-    const bool mirrored = isMirroring(worldFromObject);
+    const bool mirrored = isMirroring(worldFromObject) != deformed.isMirrored();
     std::mutex mutex;
     parallelRanges(static_cast<int64_t>(mesh.triangles.size()), 4096, [&](int64_t begin, int64_t end) {
         FirstHits found;

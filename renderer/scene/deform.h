@@ -14,8 +14,9 @@ inline bool isFaceNormal(const Vec3& delta) { return std::isnan(delta.x); }
 
 /// Vertices of `mesh` after morphing by `weights` (one for each target; missing ones are 0) and then, if `joints` is
 /// not empty, linear blend skinning with one matrix for each joint. Normals and tangents come out unit; normals go with
-/// the cofactors of the blended matrix. Those of flat triangles (kFaceNormal) are the deformed face's, and their
-/// tangents go with its edges. Parallel over vertices; the result does not depend on the thread count.
+/// the cofactors of the blended matrix, tangents and bitangents with the matrix itself. Those of flat triangles
+/// (kFaceNormal) are the deformed face's, and their tangents and bitangents go with its edges. Joints mirror a mesh if
+/// they mirror more than half of its vertices. Parallel over vertices; the result does not depend on the thread count.
 DeformedVertices deform(const Mesh& mesh, std::span<const float> weights, std::span<const Mat4> joints);
 
 }  // namespace lumi

@@ -147,7 +147,8 @@ size_t PosedScene::byteCount() const {
     std::unordered_set<const DeformedVertices*> counted{nullptr};
     const auto addShape = [&](const std::shared_ptr<const DeformedVertices>& shape) {
         if (!counted.insert(shape.get()).second) return;
-        bytes += sizeof(Vec3) * (shape->positions.size() + shape->normals.size() + shape->tangents.size());
+        bytes += sizeof(Vec3) *
+                 (shape->positions.size() + shape->normals.size() + shape->tangents.size() + shape->bitangents.size());
     };
     for (const PosedInstance& instance : instances) {
         addShape(instance.deformed);

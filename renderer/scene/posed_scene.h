@@ -10,6 +10,14 @@ namespace lumi {
 /// Vertices of a deforming mesh at one moment, object space (world space for skinned meshes).
 struct DeformedVertices {
     std::vector<Vec3> positions, normals, tangents;  ///< tangents may be empty; their handedness is the mesh's
+    /// Of skinned meshes with tangents: where joints take the cross product of normal and tangent, unit; the handedness
+    /// is the mesh's. Otherwise empty: it is that product of the two above.
+    std::vector<Vec3> bitangents;
+    /// The joints' matrix at the first vertex of the majority: of those that are mirrored, or of those that are not.
+    Mat4 blend{1};
+
+    /// The joints mirror the mesh: its front faces turn clockwise in the space of `positions`.
+    bool isMirrored() const { return isMirroring(blend); }
 };
 
 /// How an instance moves while the shutter is open: what it is at equally spaced moments from opening to closing,
@@ -19,6 +27,8 @@ struct ShutterTrack {
     std::vector<std::shared_ptr<const DeformedVertices>> deformed;  ///< one for each moment; empty if its shape stays
 
     Mat4 worldFromObjectAt(float time) const;  ///< `time` from 0 (opening) to 1 (closing)
+    /// Is the shape mirrored then? Only where it is `deformed`.
+    bool isMirroredAt(float time) const;
 };
 
 /// Where `time` in [0, 1] lies among `count` equally spaced moments: between `first` and the one after it.

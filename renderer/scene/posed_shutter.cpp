@@ -191,3 +191,12 @@ Mat4 PosedLight::worldFromLightAt(float time) const {
 }
 
 }  // namespace lumi
+bool ShutterTrack::isMirroredAt(float time) const {
+    const TrackPlace place = trackPlace(deformed.size(), time);
+    const DeformedVertices& a = *deformed[place.first];
+    if (place.fraction <= 0) return a.isMirrored();
+    const DeformedVertices& b = *deformed[place.first + 1];
+    // What mirrors at one end alone is flat at some time in between: where the straight way of the blend is.
+    return a.isMirrored() == b.isMirrored() ? a.isMirrored() : isMirroring(between(a.blend, b.blend, place.fraction));
+}
+

@@ -23,8 +23,8 @@ std::shared_ptr<const DeformedVertices> SharedShapes::of(const Instance& instanc
     }
     // Two threads may make the same one. Neither waits for the other: a worker that waits inside a loop of its own may
     // have taken up the very work that it waits for.
-    checkMemory("posing \"" + instance.name + '"',
-                sizeof(Vec3) * (mesh.positions.size() + mesh.normals.size() + mesh.tangents.size()));
+    checkMemory("posing \"" + instance.name + '"', sizeof(Vec3) * (mesh.positions.size() + mesh.normals.size() +
+                                                                   mesh.tangents.size() * (joints.empty() ? 1 : 2)));
     auto shape = std::make_shared<const DeformedVertices>(deform(mesh, weights, joints));
     const std::lock_guard lock(mutex_);
     return shapes_.try_emplace(key, std::move(shape)).first->second;

@@ -140,6 +140,12 @@ void EmbreeScene::findSides(const PosedScene& posed) {
         if (posed.scene->instances[i].material >= 0 || ofTriangles.empty()) return isSingleSided(posed, i, 0);
         const auto [known, isNew] = ofMeshes.try_emplace(&posed.mesh(i), false);
         for (uint32_t t = 0; isNew && t < ofTriangles.size() && !known->second; ++t)
+/// Do the joints mirror it at one time and not at another?
+bool turnsOver(const ShutterTrack& track) {
+    return std::any_of(track.deformed.begin(), track.deformed.end(),
+                       [&](const auto& shape) { return shape->isMirrored() != track.deformed[0]->isMirrored(); });
+}
+
             known->second = isSingleSided(posed, i, t);
         return known->second;
     };
@@ -147,8 +153,11 @@ void EmbreeScene::findSides(const PosedScene& posed) {
         const Plan& plan = plans_[i];
         if (plan.mode == Mode::None || plan.mode == Mode::Body || plan.mode == Mode::MovingBody) continue;
         // What is not in world space is traced in its own, where glTF's front faces turn counter-clockwise, mirrored or
-        // not.
-        sides_[i].turned = plan.inWorld && glm::determinant(glm::mat3(posed.instances[i].worldFromObject)) < 0;
+        // not, unless joints mirror them there.
+        const PosedInstance& pose = posed.instances[i];
+        const bool isPlaceMirrored = plan.inWorld && glm::determinant(glm::mat3(pose.worldFromObject)) < 0;
+        sides_[i].turned = isPlaceMirrored != (pose.deformed && pose.deformed->isMirrored());
+        sides_[i].turnsOver = !plan.inWorld && pose.track() && turnsOver(*pose.track());
         sides_[i].single = isSingle(i);
         hidesBackFaces_ |= sides_[i].single;
     }
@@ -168,9 +177,12 @@ void EmbreeScene::filterBackFaces(const RTCFilterFunctionNArguments* arguments) 
         const float along = RTCHitN_Ng_x(hit, n, i) * RTCRayN_dir_x(ray, n, i) +
                             RTCHitN_Ng_y(hit, n, i) * RTCRayN_dir_y(ray, n, i) +
                             RTCHitN_Ng_z(hit, n, i) * RTCRayN_dir_z(ray, n, i);
-        const bool back = sides.turned ? along < 0 : along > 0;
+        const bool turned =
+            sides.turnsOver ? scene.posed_->instances[instance].track()->isMirroredAt(time) : sides.turned;
+        const bool back = turned ? along < 0 : along > 0;
         if (back && isSingleSided(*scene.posed_, instance, RTCHitN_primID(hit, n, i))) arguments->valid[i] = 0;
     }
 }
 
 }  // namespace lumi
+        const float time = RTCRayN_time(ray, n, i);

@@ -102,10 +102,10 @@ private:
     int packetWidth_ = 1, strayPacketWidth_ = 1;
     Bounds3 bounds_;
     const PosedScene* posed_ = nullptr;  ///< null while the scene is empty
-    /// Of each instance: has it a surface whose back the camera does not see, and does Embree see its faces turned
-    /// round?
+    /// Of each instance: has it a surface whose back the camera does not see, does Embree see its faces turned round,
+    /// and if not so all the time while the shutter is open, ShutterTrack says when?
     struct Sides {
-        bool single = false, turned = false;
+        bool single = false, turned = false, turnsOver = false;
     };
     std::vector<Sides> sides_;
     bool hidesBackFaces_ = false;

@@ -17,11 +17,13 @@ MovingTriangle::MovingTriangle(const InstanceRecord& instance, const ShutterTrac
     : instance_(instance) {
     instance_.worldFromObject = track.worldFromObjectAt(time);
     instance_.normalFromObject = normalMatrix(instance_.worldFromObject);
-    instance_.mirrored = isMirroring(instance_.worldFromObject);
+    if (!track.deformed.empty()) instance_.turned = track.isMirroredAt(time);
+    instance_.mirrored = isMirroring(instance_.worldFromObject) != instance_.turned;
     if (track.deformed.empty()) {
         take(instance_.positions, t, positions_);
         take(instance_.normals, t, normals_);
         take(instance_.deformedTangents, t, deformedTangents_);
+        take(instance_.deformedBitangents, t, deformedBitangents_);
     } else {
         const TrackPlace place = trackPlace(track.deformed.size(), time);
         const DeformedVertices& a = *track.deformed[place.first];
@@ -32,9 +34,12 @@ MovingTriangle::MovingTriangle(const InstanceRecord& instance, const ShutterTrac
         between(a.positions, b.positions, positions_);
         instance_.positions = positions_;
         if (!a.normals.empty()) between(a.normals, b.normals, normals_), instance_.normals = normals_;
-        instance_.deformedTangents = nullptr;
+        instance_.deformedTangents = instance_.deformedBitangents = nullptr;
         if (!a.tangents.empty())
             between(a.tangents, b.tangents, deformedTangents_), instance_.deformedTangents = deformedTangents_;
+        if (!a.bitangents.empty())
+            between(a.bitangents, b.bitangents, deformedBitangents_),
+                instance_.deformedBitangents = deformedBitangents_;
     }
     take(instance_.restPositions, t, restPositions_);
     take(instance_.restNormals, t, restNormals_);

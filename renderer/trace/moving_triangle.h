@@ -21,7 +21,7 @@ public:
 
 private:
     InstanceRecord instance_;
-    Vec3 positions_[3], normals_[3], restPositions_[3], restNormals_[3], deformedTangents_[3];
+    Vec3 positions_[3], normals_[3], restPositions_[3], restNormals_[3], deformedTangents_[3], deformedBitangents_[3];
     Vec4 tangents_[3], colours_[3];
     Vec2 uv_[2][3];
 };

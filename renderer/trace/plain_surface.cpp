@@ -20,7 +20,9 @@ void collectTangents(const InstanceRecord& r, const UVec3& t, const Vec3& object
                                             : Vec3(interpolate(r.tangents, t, hit.u, hit.v));
     const float hand = r.tangents[t.x].w < 0 ? -1.0f : 1.0f;
     lanes.tangent.set(i, directions * tangent);
-    lanes.bitangent.set(i, directions * (glm::cross(objectNormal, tangent) * hand));
+    const Vec3 across =
+        r.deformedBitangents ? interpolate(r.deformedBitangents, t, hit.u, hit.v) : glm::cross(objectNormal, tangent);
+    lanes.bitangent.set(i, directions * (across * hand));
 }
 
 void collectTextureCoordinates(const Vec2* uv, const UVec3& t, PlainLanes& lanes, int i) {

@@ -114,6 +114,9 @@ InstanceRecord makeInstance(const PosedScene& posed, const EmbreeScene& embree, 
         if (!pose.deformed->normals.empty()) r.normals = pose.deformed->normals.data();
         r.deformedTangents = dataOrNull(pose.deformed->tangents);
         count = pose.deformed->positions.size();
+        r.deformedBitangents = dataOrNull(pose.deformed->bitangents);
+        r.turned = pose.deformed->isMirrored();
+        r.mirrored = r.mirrored != r.turned;
     }
     float largestRow = 0;
     const auto addRows = [&](const Mat4& m) {

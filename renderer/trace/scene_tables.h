@@ -15,8 +15,9 @@ struct InstanceRecord {
     const Vec3* normals = nullptr;      ///< object space, posed; null: flat
     const Vec3* restNormals = nullptr;  ///< of the mesh, object space
     const Vec3* restPositions = nullptr;
-    const Vec4* tangents = nullptr;          ///< of the mesh: directions at rest, and handedness
-    const Vec3* deformedTangents = nullptr;  ///< posed directions, if the pose has them
+    const Vec4* tangents = nullptr;            ///< of the mesh: directions at rest, and handedness
+    const Vec3* deformedTangents = nullptr;    ///< posed directions, if the pose has them
+    const Vec3* deformedBitangents = nullptr;  ///< the same across, if the pose has them; see DeformedVertices
     const Vec2* uv[2] = {nullptr, nullptr};
     const Vec4* colours = nullptr;
     const uint32_t* triangleMaterial = nullptr;  ///< null: `material` for all
@@ -24,7 +25,8 @@ struct InstanceRecord {
     uint32_t triangleCount = 0;
     int body = -1;  ///< index into SceneTables::shapes if this is the body of a light
     bool inWorld = false;
-    bool mirrored = false;
+    bool turned = false;    ///< joints mirror it: front faces turn clockwise in the space of `positions`
+    bool mirrored = false;  ///< front faces turn clockwise in the world
     float objectScale = 0;  ///< largest |coordinate| that the transform's products reach: bounds rounding errors
     Mat4 worldFromObject{1};
     Mat3 normalFromObject{1};

@@ -44,7 +44,9 @@ TangentFrame tangentFrame(const InstanceRecord& r, uint32_t primitive, const UVe
         const Vec3 tangent =
             r.deformedTangents ? interpolate(r.deformedTangents, t, b) : Vec3(interpolate(r.tangents, t, b));
         const float hand = r.tangents[t.x].w < 0 ? -1.0f : 1.0f;
-        return {directions * tangent, directions * (glm::cross(objectNormal, tangent) * hand)};
+        const Vec3 across =
+            r.deformedBitangents ? interpolate(r.deformedBitangents, t, b) : glm::cross(objectNormal, tangent);
+        return {directions * tangent, directions * (across * hand)};
     }
     const Vec2* uv = r.uv[texture.uvSet == 1 ? 1 : 0];
     if (!uv) return {};
@@ -134,9 +136,8 @@ SurfaceGeometry geometryOf(const SceneTables& tables, const InstanceRecord& r, c
     g.position = p0 + g.edge1 * b.x + g.edge2 * b.y;
     Vec3 outward = glm::cross(g.edge1, g.edge2);
     g.twiceArea = glm::length(outward);
-    if (r.inWorld) {
-        if (r.mirrored) outward = -outward;
-    } else {
+    if (r.inWorld ? r.mirrored : r.turned) outward = -outward;
+    if (!r.inWorld) {
         g.position = transformPoint(r.worldFromObject, g.position);
         outward = r.normalFromObject * outward;
         g.edge1 = transformVector(r.worldFromObject, g.edge1);

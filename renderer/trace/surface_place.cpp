@@ -17,8 +17,8 @@ Vec3 placeAmong(const Vec3* positions, const UVec3& t, Vec2 b) {
 Vec3 smoothNormal(const InstanceRecord& r, const UVec3& t, Vec2 barycentrics) {
     const Vec3 edge1 = r.positions[t.y] - r.positions[t.x], edge2 = r.positions[t.z] - r.positions[t.x];
     Vec3 outward = glm::cross(edge1, edge2);
+    if (r.inWorld ? r.mirrored : r.turned) outward = -outward;
     if (!r.inWorld) outward = r.normalFromObject * outward;
-    else if (r.mirrored) outward = -outward;
     outward = quickUnitOr(outward, Vec3(0, 1, 0));
     return r.normals ? quickUnitOr(r.normalFromObject * placeAmong(r.normals, t, barycentrics), outward) : outward;
 }

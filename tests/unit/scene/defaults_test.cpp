@@ -168,6 +168,13 @@ TEST(DefaultCamera, ClosedObjectsAreNoRooms) {
     EXPECT_GT(glm::distance(defaultCamera(object).eye, Vec3(0)), 2);
     object.nodes[0].local.scale = {-1, 1, 1};
     EXPECT_EQ(enclosure(object, Vec3(0)), 0) << "mirroring does not turn an object inside out";
+    Scene skinned = object;
+    Mesh mesh = *object.instances[0].mesh;
+    for (uint32_t v = 0; v <= mesh.positions.size(); ++v) mesh.skin.first.push_back(v);
+    mesh.skin.joint.assign(mesh.positions.size(), 0), mesh.skin.weight.assign(mesh.positions.size(), 1);
+    skinned.instances[0].mesh = std::make_shared<const Mesh>(mesh), skinned.instances[0].skin = 0;
+    skinned.skins = {{{0}, {Mat4(1)}}};
+    EXPECT_EQ(enclosure(skinned, Vec3(0)), 0) << "nor by its joints";
     // A crate in the middle of a room: the centre lies inside the crate, whose inside is met first.
     object.instances.push_back({"room", std::make_shared<const Mesh>(roomMesh(Vec3(20))), -1, -1, -1, -1});
     EXPECT_EQ(enclosure(object, Vec3(0)), 0);

@@ -222,6 +222,83 @@ TEST(Pose, NormalsOfScaledJointsStayPerpendicular) {
     expectNear(v.normals[0], glm::normalize(Vec3(1, 4, 0)));
 }
 
+/// The bar with a third vertex off its line, its vertices on joints 0, 1 and 1.
+Mesh handed() {
+    Mesh mesh = *bar();
+    mesh.positions[2] = {0, 0, -1};
+    mesh.skin = {{0, 1, 2, 3}, {0, 1, 1}, {1, 1, 1}};
+    return mesh;
+}
+
+Mat4 scaled(const Vec3& s) { return Transform{Vec3(0), Quat(1, 0, 0, 0), s}.matrix(); }
+
+TEST(Pose, JointsMirrorWhatMostVerticesSay) {
+    const Mesh mesh = handed();
+    const Mat4 mirror = scaled({-1, 1, 1}), turn = scaled({-1, -1, 1}), still(1);
+    const auto isMirrored = [&](const Mat4& first, const Mat4& others) {
+        return deform(mesh, {}, std::vector<Mat4>{first, others}).isMirrored();
+    };
+    EXPECT_TRUE(isMirrored(mirror, mirror));
+    EXPECT_TRUE(isMirrored(still, mirror));
+    EXPECT_FALSE(isMirrored(mirror, turn));
+    EXPECT_FALSE(isMirrored(turn, still));
+    EXPECT_FALSE(deform(mesh, {}, {}).isMirrored());
+    // Half turns about three axes add up to a mirror, though none of them is one.
+    Mesh three = mesh;
+    three.skin.joint = {0, 1, 2};
+    EXPECT_FALSE(deform(three, {}, std::vector<Mat4>{turn, scaled({-1, 1, -1}), scaled({1, -1, -1})}).isMirrored());
+}
+
+TEST(Pose, BitangentsGoWithTheJoints) {
+    Mesh mesh = handed();
+    const Vec3 tangent = glm::normalize(Vec3(1, 0, 2)), across = glm::cross(Vec3(0, 1, 0), tangent);
+    mesh.tangents.assign(3, Vec4(tangent, -1));
+    for (const Vec3& scale : {Vec3(-1, 1, 1), Vec3(3, 0.5f, 0.7f), Vec3(-2, -1, -0.4f)}) {
+        const DeformedVertices v = deform(mesh, {}, std::vector<Mat4>(2, scaled(scale)));
+        ASSERT_EQ(v.bitangents.size(), 3u);
+        expectNear(v.bitangents[2], glm::normalize(scale * across));
+        expectNear(v.tangents[2], glm::normalize(scale * tangent));
+    }
+    EXPECT_TRUE(deform(mesh, {}, {}).bitangents.empty()) << "their cross product will do";
+}
+
+TEST(Pose, FlatFacesKeepTheirFrontOnJointsThatMirror) {
+    Mesh mesh = handed();
+    mesh.morphTargets = {{{{0, 0, 0}, {0, 1, 0}, {0, 0, 0}}, std::vector<Vec3>(3, kFaceNormal), {}}};
+    const std::vector<float> weights{1};
+    // The plane y = x at weight 1, x mirrored: y = -x.
+    for (const Vec3& scale : {Vec3(1), Vec3(-1, 1, 1), Vec3(-1, 1, -1), Vec3(1, 1, -1)}) {
+        const DeformedVertices v = deform(mesh, weights, std::vector<Mat4>(2, scaled(scale)));
+        for (const Vec3& n : v.normals) expectNear(n, glm::normalize(Vec3(-scale.x, 1, 0)));
+        expectNear(v.bitangents[0], scale * Vec3(0, 0, -1));
+    }
+}
+
+/// From scale 1 to `last` while the shutter is open.
+TEST(Pose, AShutterKnowsWhenJointsBeginToMirror) {
+    for (const Vec3& last : {Vec3(-3, 1, 1), Vec3(-3), Vec3(1, -3, 2)}) {
+        auto scene = std::make_shared<Scene>();
+        scene->materials.resize(1);
+        scene->nodes = {node(-1, {0, 0, 0})};
+        Instance instance;
+        instance.mesh = std::make_shared<Mesh>(handed());
+        instance.skin = 0;
+        scene->instances = {instance};
+        scene->skins = {{{0, 0}, {Mat4(1), Mat4(1)}}};
+        AnimationChannel scale;
+        scale.node = 0;
+        scale.property = AnimatedProperty::Scale;
+        scale.times = {0, 1};
+        scale.values = {1, 1, 1, last.x, last.y, last.z};
+        scene->animations = {{{scale}, 1, false}};
+        const auto posed = poseScene(scene, {.open = 0, .close = 1, .previousOpen = 0});
+        const ShutterTrack* track = posed->instances[0].track();
+        ASSERT_TRUE(track && track->deformed.size() > 1);
+        for (const float time : {0.0f, 0.1f, 0.24f}) EXPECT_FALSE(track->isMirroredAt(time)) << time;
+        for (const float time : {0.26f, 0.5f, 0.7f, 1.0f}) EXPECT_TRUE(track->isMirroredAt(time)) << time;
+    }
+}
+
 TEST(Pose, MorphWeightsAreAnimated) {
     auto scene = slidingScene();
     auto mesh = std::make_shared<Mesh>(*scene->instances[0].mesh);
