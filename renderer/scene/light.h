@@ -12,8 +12,14 @@ namespace lumi {
 
 enum class LightType : uint8_t { Point, Spot, Directional, Rectangle, Disk, Sphere };
 
+/// True for the light types that have a body.
+inline bool hasBody(LightType type) {
+    return type == LightType::Rectangle || type == LightType::Disk || type == LightType::Sphere;
+}
+
 /// A light that is not a mesh. Its frame comes from a transform: emission goes along local -Z (spot, directional,
-/// rectangle, disk), the rectangle spans local X and Y. Rectangles, disks and spheres are visible.
+/// rectangle, disk), the rectangle spans local X and Y. Rectangles, disks and spheres are visible; they take
+/// the transform's scale, the others none [KHR_lights_punctual].
 struct Light {
     std::string name;
     LightType type = LightType::Point;

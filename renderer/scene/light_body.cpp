@@ -1,10 +1,14 @@
 #include "scene/light_body.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <tuple>
 
+#include "scene/file_warnings.h"
 #include "scene/procedural/primitives.h"
 
 namespace lumi {
@@ -59,6 +63,10 @@ bool wornOtherwise(const Scene& scene, uint32_t material) {
 using Size = std::tuple<LightType, float, float, float>;
 Size sizeOf(const Light& light) { return {light.type, light.radius, light.size.x, light.size.y}; }
 
+Vec3 lengthsOfAxes(const Mat4& m) {
+    return {glm::length(Vec3(m[0])), glm::length(Vec3(m[1])), glm::length(Vec3(m[2]))};
+}
+
 bool sameShape(const Mesh& a, const Mesh& b) { return a.positions == b.positions; }
 
 }  // namespace
@@ -97,6 +105,31 @@ void addLightBodies(Scene& scene) {
         if (material < 0) material = bodyMaterial(scene);
         scene.instances.push_back({light.name, body, light.node, -1, material, static_cast<int>(i)});
     }
+}
+
+float sphereScale(const Mat4& worldFromLight) {
+    const Vec3 axes = lengthsOfAxes(worldFromLight);
+    const float longest = maxComponent(axes);
+    if (minComponent(axes) >= (1 - 1e-5f) * longest) return (axes.x + axes.y + axes.z) * (1.0f / 3.0f);
+    constexpr float kPower = 1.6075f;
+    const Vec3 powers = glm::pow(axes / longest, Vec3(kPower));
+    const float sum = powers.x * powers.y + powers.y * powers.z + powers.z * powers.x;
+    return longest * std::pow(sum * (1.0f / 3.0f), 0.5f / kPower);
+}
+
+void warnOfStretchedLights(const PosedScene& posed, MessageLog& log) {
+    FileWarnings warnings(std::filesystem::path(posed.scene->path).filename().string(), log);
+    for (size_t i = 0; i < posed.lights.size(); ++i) {
+        const Light& light = posed.scene->lights[i];
+        const Mat4& frame = posed.lights[i].worldFromLight;
+        const Vec3 axes = lengthsOfAxes(frame);
+        if (light.type != LightType::Sphere || minComponent(axes) >= 0.99f * maxComponent(axes)) continue;
+        warnings.warn(fmt::format(
+            "the sphere light \"{}\" is scaled by {:.4g} x {:.4g} x {:.4g}: shown is a sphere of the same area, "
+            "radius {:.4g} m",
+            light.name, axes.x, axes.y, axes.z, light.radius * sphereScale(frame)));
+    }
+    warnings.tellOfMore();
 }
 
 std::vector<bool> bodyMaterials(const Scene& scene) {

@@ -2,7 +2,8 @@
 #include <memory>
 #include <vector>
 
-#include "scene/scene.h"
+#include "base/messages.h"
+#include "scene/posed_scene.h"
 
 namespace lumi {
 
@@ -14,6 +15,12 @@ std::shared_ptr<const Mesh> lightBody(const Light& light);
 /// wearing one black material named "light body"; lights of one kind and size share a mesh. Bodies that stand already
 /// are made again if their light's size changed; the rest of the scene keeps its order.
 void addLightBodies(Scene& scene);
+
+/// Factor on a sphere light's radius. Under axes of several lengths it stays a sphere, of the area of the ellipsoid
+/// that it would be, by Thomsen's formula (within 1.1 %): what it shines all around stays the same.
+float sphereScale(const Mat4& worldFromLight);
+/// Names the sphere lights whose axes differ by more than 1 %, and says what is shown of them.
+void warnOfStretchedLights(const PosedScene& posed, MessageLog& log);
 
 /// For each material of the scene: is it the one that addLightBodies() made, worn by bodies alone? It says nothing of
 /// them: what a body shows is its light's.

@@ -82,7 +82,8 @@ std::shared_ptr<const Scene> loadScene(const fs::path& path, MessageLog& log, co
     }
     if (scene->path.empty()) scene->path = path.string();
     addLightBodies(*scene);
-    poseScene(scene, {}, nullptr, options.stop);  // what cannot be posed is not taken over
+    // What cannot be posed is not taken over.
+    warnOfStretchedLights(*poseScene(scene, {}, nullptr, options.stop), log);
     addDefaults(*scene, log, !ours, options.stop);
     if (options.progress) options.progress(1, "done");
     return scene;

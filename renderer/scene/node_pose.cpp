@@ -66,25 +66,69 @@ NodePose poseNodes(const Scene& scene, std::optional<float> time) {
     return pose;
 }
 
-Mat4 worldFromNodeAt(const Scene& scene, int node, std::optional<float> time) {
+namespace {
+
+/// A node and its ancestors at one moment, the root first.
+struct Chain {
+    std::vector<int> nodes;
+    std::vector<Transform> locals;
+};
+
+Chain chainAt(const Scene& scene, int node, std::optional<float> time) {
+    Chain chain;
     // Parents stand before their children: from the root down, the chain's indices ascend.
-    std::vector<int> chain;
-    for (int i = node; i >= 0; i = scene.nodes[static_cast<size_t>(i)].parent) chain.push_back(i);
-    std::reverse(chain.begin(), chain.end());
-    std::vector<Transform> locals(chain.size());
-    for (size_t i = 0; i < chain.size(); ++i) locals[i] = scene.nodes[static_cast<size_t>(chain[i])].local;
-    if (time)
-        for (const Animation& animation : scene.animations) {
-            const float local = localTime(animation, *time);
-            for (const AnimationChannel& channel : animation.channels)
-                if (const auto at = std::lower_bound(chain.begin(), chain.end(), channel.node);
-                    at != chain.end() && *at == channel.node)
-                    apply(channel, local, locals[static_cast<size_t>(at - chain.begin())], nullptr);
-        }
+    for (int i = node; i >= 0; i = scene.nodes[static_cast<size_t>(i)].parent) chain.nodes.push_back(i);
+    std::reverse(chain.nodes.begin(), chain.nodes.end());
+    for (const int i : chain.nodes) chain.locals.push_back(scene.nodes[static_cast<size_t>(i)].local);
+    if (!time) return chain;
+    const auto begin = chain.nodes.begin(), end = chain.nodes.end();
+    for (const Animation& animation : scene.animations) {
+        const float local = localTime(animation, *time);
+        for (const AnimationChannel& channel : animation.channels)
+            if (const auto at = std::lower_bound(begin, end, channel.node); at != end && *at == channel.node)
+                apply(channel, local, chain.locals[static_cast<size_t>(at - begin)], nullptr);
+    }
+    return chain;
+}
+
+/// Its axes made unit. One that vanished lies across the other two; what remains unknown is chosen.
+Mat3 unitAxes(const Mat3& m) {
+    const Vec3 none(0);
+    Mat3 axes(unitOr(m[0], none), unitOr(m[1], none), unitOr(m[2], none));
+    for (int i = 0; i < 3; ++i)
+        if (axes[i] == none) axes[i] = unitOr(glm::cross(axes[(i + 1) % 3], axes[(i + 2) % 3]), none);
+    for (int i = 0; i < 3; ++i) {
+        if (axes[i] == none || (axes[(i + 1) % 3] != none && axes[(i + 2) % 3] != none)) continue;
+        const Frame around(axes[i]);
+        axes[(i + 1) % 3] = around.x, axes[(i + 2) % 3] = around.y;
+    }
+    return axes[0] == none ? Mat3(1) : axes;
+}
+
+Mat3 turnOf(const Node& node, const Transform& local) {
+    if (node.hasMatrix) return unitAxes(Mat3(node.matrix));
+    Mat3 turn = glm::mat3_cast(local.rotation);
+    for (int i = 0; i < 3; ++i)
+        if (local.scale[i] < 0) turn[i] = -turn[i];
+    return turn;
+}
+
+}  // namespace
+
+Mat4 worldFromNodeAt(const Scene& scene, int node, std::optional<float> time) {
+    const Chain chain = chainAt(scene, node, time);
     Mat4 world(1);
-    for (size_t i = 0; i < chain.size(); ++i)
-        world = world * localMatrix(scene.nodes[static_cast<size_t>(chain[i])], locals[i]);
+    for (size_t i = 0; i < chain.nodes.size(); ++i)
+        world = world * localMatrix(scene.nodes[static_cast<size_t>(chain.nodes[i])], chain.locals[i]);
     return world;
+}
+
+Mat3 worldTurnAt(const Scene& scene, int node, std::optional<float> time) {
+    const Chain chain = chainAt(scene, node, time);
+    Mat3 world(1);
+    for (size_t i = 0; i < chain.nodes.size(); ++i)
+        world = world * turnOf(scene.nodes[static_cast<size_t>(chain.nodes[i])], chain.locals[i]);
+    return unitAxes(world);
 }
 
 void placeAtNode(Camera& camera, const Mat4& worldFromNode) {

@@ -19,6 +19,10 @@ NodePose poseNodes(const Scene& scene, std::optional<float> time);
 /// moment, poseNodes() does.
 Mat4 worldFromNodeAt(const Scene& scene, int node, std::optional<float> time);
 
+/// How a node and its ancestors turn, scales left out but for mirroring: unit axes, also where a scale of 0 leaves none
+/// to the world matrix. Looks at every channel once.
+Mat3 worldTurnAt(const Scene& scene, int node, std::optional<float> time);
+
 /// Stands a camera at its node: a rigid frame that looks along -Z, whatever the node's scale, with the camera's own
 /// distance to its target.
 void placeAtNode(Camera& camera, const Mat4& worldFromNode);

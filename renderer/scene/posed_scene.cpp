@@ -81,15 +81,11 @@ Bounds3 worldBounds(const PosedInstance& posed, const Bounds3& meshBounds) {
 }
 
 void poseLights(const PosedMoment& open, const PosedMoment& previous, const PosedScene* earlier, PosedScene& posed) {
-    const std::vector<Light>& lights = posed.scene->lights;
-    const auto frame = [](const Light& light, const PosedMoment& moment) {
-        return light.node < 0 ? Mat4(1) : moment.nodes.worldFromNode[static_cast<size_t>(light.node)];
-    };
-    posed.lights.resize(lights.size());
-    for (size_t i = 0; i < lights.size(); ++i) {
-        posed.lights[i].worldFromLight = frame(lights[i], open);
+    posed.lights.resize(posed.scene->lights.size());
+    for (size_t i = 0; i < posed.lights.size(); ++i) {
+        posed.lights[i].worldFromLight = open.worldFromLight[i];
         posed.lights[i].worldFromLightPrevious =
-            earlier ? earlier->lights[i].worldFromLight : frame(lights[i], previous);
+            earlier ? earlier->lights[i].worldFromLight : previous.worldFromLight[i];
         posed.anythingMoves |= posed.lights[i].worldFromLight != posed.lights[i].worldFromLightPrevious;
     }
 }
@@ -133,8 +129,8 @@ void openShutter(const ShutterTimes& times, bool cut, const PosedScene* before, 
     checkStop(stop);
     for (size_t i = 0; i < posed.lights.size(); ++i) {
         PosedLight& light = posed.lights[i];
-        light.track = shutterFrames(scene.lights[i], moments);
-        if (!earlier.empty()) light.previousTrack = shutterFrames(scene.lights[i], earlier);
+        light.track = shutterFrames(i, moments);
+        if (!earlier.empty()) light.previousTrack = shutterFrames(i, earlier);
         if (cut) light.previousTrack = light.track;
     }
     if (before) keepPreviousTracks(*before, posed);

@@ -75,6 +75,7 @@ struct PosedInstance {
     Mat3 normalFromObject() const { return normalMatrix(worldFromObject); }
 };
 
+/// The matrix of a light's node; of lights without a body, which take no scale, never without axes.
 struct PosedLight {
     Mat4 worldFromLight{1}, worldFromLightPrevious{1};
     std::vector<Mat4> track, previousTrack;  ///< at equally spaced moments of the open shutter; empty: it stands still

@@ -52,14 +52,18 @@ bool strays(const Instance& instance, const PosedMoment& a, const PosedMoment& t
                     [&](size_t j) { return strays(jointsA[j], joints[j], jointsB[j], part, meshBounds); });
 }
 
-Mat4 frameOf(const Light& light, const PosedMoment& moment) {
-    return light.node < 0 ? Mat4(1) : moment.nodes.worldFromNode[static_cast<size_t>(light.node)];
+/// A light's frame, see PosedLight.
+Mat4 frameOf(const Scene& scene, const Light& light, const NodePose& nodes, float time) {
+    if (light.node < 0) return Mat4(1);
+    const Mat4& world = nodes.worldFromNode[static_cast<size_t>(light.node)];
+    if (hasBody(light.type) || glm::length(Vec3(world[2])) > 1e-18f) return world;  // its square is a plain float
+    Mat4 frame(worldTurnAt(scene, light.node, time));
+    frame[3] = world[3];
+    return frame;
 }
 
 /// The same for a light: its place, in a scene of this radius, and the axis along which it shines.
-bool strays(const Light& light, const PosedMoment& a, const PosedMoment& truth, const PosedMoment& b, float part,
-            float sceneRadius) {
-    const Mat4 from = frameOf(light, a), to = frameOf(light, b), there = frameOf(light, truth);
+bool strays(const Light& light, const Mat4& from, const Mat4& there, const Mat4& to, float part, float sceneRadius) {
     if (from == to && from == there) return false;
     const Mat4 straight = between(from, to, part);
     const auto axis = [](const Mat4& frame) { return glm::normalize(Vec3(frame[2]) + Vec3(1e-30f)); };
@@ -99,8 +103,9 @@ bool suffices(const Instance& instance, std::span<const PosedMoment> moments, si
 }  // namespace
 
 PosedMoment poseMoment(const Scene& scene, float time) {
-    PosedMoment moment{poseNodes(scene, time), {}};
+    PosedMoment moment{poseNodes(scene, time), {}, {}};
     for (const Skin& skin : scene.skins) moment.joints.push_back(jointMatrices(skin, moment.nodes));
+    for (const Light& light : scene.lights) moment.worldFromLight.push_back(frameOf(scene, light, moment.nodes, time));
     return moment;
 }
 
@@ -145,8 +150,11 @@ std::vector<PosedMoment> shutterMoments(const Scene& scene, float open, float cl
         for (size_t k = 0; k < scene.instances.size(); ++k)
             if (strays(scene.instances[k], a, truth, b, part, meshBounds[k])) return true;
         if (sceneRadius == 0 && !scene.lights.empty()) sceneRadius = radiusOf(scene, a, meshBounds);
-        return std::ranges::any_of(scene.lights,
-                                   [&](const Light& light) { return strays(light, a, truth, b, part, sceneRadius); });
+        for (size_t i = 0; i < scene.lights.size(); ++i)
+            if (strays(scene.lights[i], a.worldFromLight[i], truth.worldFromLight[i], b.worldFromLight[i], part,
+                       sceneRadius))
+                return true;
+        return false;
     };
     return straightSegments(shutterTurns(scene, open, close), at, anyStrays);
 }
@@ -170,10 +178,9 @@ std::shared_ptr<const ShutterTrack> shutterTrack(const Instance& instance, std::
     return track;
 }
 
-std::vector<Mat4> shutterFrames(const Light& light, std::span<const PosedMoment> moments) {
+std::vector<Mat4> shutterFrames(size_t light, std::span<const PosedMoment> moments) {
     std::vector<Mat4> frames;
-    if (light.node < 0) return frames;
-    for (const PosedMoment& moment : moments) frames.push_back(frameOf(light, moment));
+    for (const PosedMoment& moment : moments) frames.push_back(moment.worldFromLight[light]);
     const bool still = std::all_of(frames.begin(), frames.end(), [&](const Mat4& m) { return m == frames[0]; });
     return still ? std::vector<Mat4>() : frames;
 }
@@ -184,13 +191,6 @@ Mat4 ShutterTrack::worldFromObjectAt(float time) const {
     return between(worldFromObject[place.first], worldFromObject[place.first + 1], place.fraction);
 }
 
-Mat4 PosedLight::worldFromLightAt(float time) const {
-    if (track.empty()) return worldFromLight;
-    const TrackPlace place = trackPlace(track.size(), time);
-    return between(track[place.first], track[place.first + 1], place.fraction);
-}
-
-}  // namespace lumi
 bool ShutterTrack::isMirroredAt(float time) const {
     const TrackPlace place = trackPlace(deformed.size(), time);
     const DeformedVertices& a = *deformed[place.first];
@@ -200,3 +200,10 @@ bool ShutterTrack::isMirroredAt(float time) const {
     return a.isMirrored() == b.isMirrored() ? a.isMirrored() : isMirroring(between(a.blend, b.blend, place.fraction));
 }
 
+Mat4 PosedLight::worldFromLightAt(float time) const {
+    if (track.empty()) return worldFromLight;
+    const TrackPlace place = trackPlace(track.size(), time);
+    return between(track[place.first], track[place.first + 1], place.fraction);
+}
+
+}  // namespace lumi

@@ -13,6 +13,7 @@ namespace lumi {
 struct PosedMoment {
     NodePose nodes;
     std::vector<std::vector<Mat4>> joints;  ///< for each skin
+    std::vector<Mat4> worldFromLight;       ///< for each light, see PosedLight
     std::shared_ptr<SharedShapes> shapes = std::make_shared<SharedShapes>();
 };
 
@@ -39,7 +40,7 @@ std::shared_ptr<const ShutterTrack> shutterTrack(const Instance& instance, std::
                                                  const Bounds3& meshBounds,
                                                  std::shared_ptr<const DeformedVertices> deformed);
 
-/// A light's frames over the moments; empty if it stands still.
-std::vector<Mat4> shutterFrames(const Light& light, std::span<const PosedMoment> moments);
+/// The frames of light number `light` over the moments; empty if it stands still.
+std::vector<Mat4> shutterFrames(size_t light, std::span<const PosedMoment> moments);
 
 }  // namespace lumi

@@ -55,10 +55,12 @@ RTCGeometry EmbreeScene::newBody(const PosedScene& posed, uint32_t index) const 
     const Body body(posed, index);
     std::span<const LightShape> shapes = body.shutterShapes;
     if (shapes.empty()) shapes = {&body.shape, 1};
-    const bool rectangle = body.shape.type == LightType::Rectangle, disk = body.shape.type == LightType::Disk;
-    RTCGeometry geometry = rtcNewGeometry(device_, rectangle ? RTC_GEOMETRY_TYPE_QUAD
-                                                   : disk    ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT
-                                                             : RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    const bool disk = body.shape.type == LightType::Disk;
+    const bool circle = disk && shapes.size() == 1 && body.shape.isCircle();
+    const bool quad = !circle && body.shape.type != LightType::Sphere;
+    RTCGeometry geometry = rtcNewGeometry(device_, quad     ? RTC_GEOMETRY_TYPE_QUAD
+                                                   : circle ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT
+                                                            : RTC_GEOMETRY_TYPE_SPHERE_POINT);
     rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(shapes.size()));
     const auto set = [&](RTCBufferType type, unsigned slot, RTCFormat format, const auto& values) {
         using Value = std::remove_cvref_t<decltype(values[0])>;
@@ -67,7 +69,7 @@ RTCGeometry EmbreeScene::newBody(const PosedScene& posed, uint32_t index) const 
     };
     for (unsigned step = 0; step < shapes.size(); ++step) {
         const LightShape& s = shapes[step];
-        if (rectangle) {
+        if (quad) {
             const Vec3 corners[] = {s.centre - s.halfX - s.halfY, s.centre + s.halfX - s.halfY,
                                     s.centre + s.halfX + s.halfY, s.centre - s.halfX + s.halfY};
             set(RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3, corners);
@@ -76,12 +78,24 @@ RTCGeometry EmbreeScene::newBody(const PosedScene& posed, uint32_t index) const 
         const Vec4 point[] = {Vec4(s.centre, s.radius)};
         set(RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT4, point);
         const Vec3 normal[] = {s.normal};
-        if (disk) set(RTC_BUFFER_TYPE_NORMAL, step, RTC_FORMAT_FLOAT3, normal);
+        if (circle) set(RTC_BUFFER_TYPE_NORMAL, step, RTC_FORMAT_FLOAT3, normal);
     }
     const glm::uvec4 corners[] = {{0, 1, 2, 3}};
-    if (rectangle) set(RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, corners);
+    if (quad) set(RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, corners);
+    if (quad && disk) {
+        rtcSetGeometryIntersectFilterFunction(geometry, &EmbreeScene::filterCorners);
+        rtcSetGeometryOccludedFilterFunction(geometry, &EmbreeScene::filterCorners);
+    }
     rtcCommitGeometry(geometry);
     return geometry;
+}
+
+void EmbreeScene::filterCorners(const RTCFilterFunctionNArguments* arguments) {
+    const unsigned n = arguments->N;
+    for (unsigned i = 0; i < n; ++i) {
+        const float x = 2 * RTCHitN_u(arguments->hit, n, i) - 1, y = 2 * RTCHitN_v(arguments->hit, n, i) - 1;
+        if (x * x + y * y > 1) arguments->valid[i] = 0;
+    }
 }
 
 void EmbreeScene::filter(const RTCFilterFunctionNArguments* arguments) {
@@ -126,6 +140,12 @@ bool isSingleSided(const PosedScene& posed, uint32_t instance, uint32_t primitiv
     return isSingleSided(materials[index < materials.size() ? index : 0]);
 }
 
+/// Do the joints mirror it at one time and not at another?
+bool turnsOver(const ShutterTrack& track) {
+    return std::any_of(track.deformed.begin(), track.deformed.end(),
+                       [&](const auto& shape) { return shape->isMirrored() != track.deformed[0]->isMirrored(); });
+}
+
 }  // namespace
 
 void EmbreeScene::findSides(const PosedScene& posed) {
@@ -140,12 +160,6 @@ void EmbreeScene::findSides(const PosedScene& posed) {
         if (posed.scene->instances[i].material >= 0 || ofTriangles.empty()) return isSingleSided(posed, i, 0);
         const auto [known, isNew] = ofMeshes.try_emplace(&posed.mesh(i), false);
         for (uint32_t t = 0; isNew && t < ofTriangles.size() && !known->second; ++t)
-/// Do the joints mirror it at one time and not at another?
-bool turnsOver(const ShutterTrack& track) {
-    return std::any_of(track.deformed.begin(), track.deformed.end(),
-                       [&](const auto& shape) { return shape->isMirrored() != track.deformed[0]->isMirrored(); });
-}
-
             known->second = isSingleSided(posed, i, t);
         return known->second;
     };
@@ -174,6 +188,7 @@ void EmbreeScene::filterBackFaces(const RTCFilterFunctionNArguments* arguments) 
         const uint32_t instance = placed != RTC_INVALID_GEOMETRY_ID ? placed : RTCHitN_geomID(hit, n, i);
         const Sides sides = scene.sides_[instance];
         if (!sides.single) continue;
+        const float time = RTCRayN_time(ray, n, i);
         const float along = RTCHitN_Ng_x(hit, n, i) * RTCRayN_dir_x(ray, n, i) +
                             RTCHitN_Ng_y(hit, n, i) * RTCRayN_dir_y(ray, n, i) +
                             RTCHitN_Ng_z(hit, n, i) * RTCRayN_dir_z(ray, n, i);
@@ -185,4 +200,3 @@ void EmbreeScene::filterBackFaces(const RTCFilterFunctionNArguments* arguments) 
 }
 
 }  // namespace lumi
-        const float time = RTCRayN_time(ray, n, i);

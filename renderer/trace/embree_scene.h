@@ -94,6 +94,8 @@ private:
     void throwIfFailed(const char* step) const;
     void throwIfStopped() const;
     static void filter(const RTCFilterFunctionNArguments* arguments);
+    /// Leaves of a parallelogram the ellipse in it: an elliptic or moving disk.
+    static void filterCorners(const RTCFilterFunctionNArguments* arguments);
     static void filterBackFaces(const RTCFilterFunctionNArguments* arguments);
     void findSides(const PosedScene& posed);
 

@@ -1,7 +1,9 @@
 #include "trace/light_shape.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "scene/light_body.h"
 #include "scene/posed_scene.h"
 
 namespace lumi {
@@ -71,31 +73,36 @@ bool areOrthogonal(const Vec3& a, const Vec3& b) {
     return std::abs(glm::dot(a, b)) <= 1e-5f * glm::length(a) * glm::length(b);
 }
 
+float areaOf(const LightShape& flat) {
+    return (flat.type == LightType::Disk ? kPi : 4.0f) * glm::length(glm::cross(flat.halfX, flat.halfY));
+}
+
 }  // namespace
 
+bool LightShape::isCircle() const {
+    const float x = glm::length(halfX), y = glm::length(halfY);
+    return rightAngled && std::abs(x - y) <= 1e-5f * std::max(x, y);
+}
+
 LightShape lightShape(const Light& light, const Mat4& worldFromLight) {
-    const Vec3 axisX(worldFromLight[0]), axisY(worldFromLight[1]), axisZ(worldFromLight[2]);
+    const Vec3 axisX(worldFromLight[0]), axisY(worldFromLight[1]);
     LightShape shape;
     shape.type = light.type;
     shape.radiance = light.radiance * light.power;
     if (light.radianceTexture && light.type != LightType::Sphere) shape.texture = &light.radianceTexture;
     shape.centre = Vec3(worldFromLight[3]);
     shape.normal = unitOr(-(normalMatrix(worldFromLight) * Vec3(0, 0, 1)), Vec3(0, 0, -1));
-    if (light.type == LightType::Rectangle) {
-        shape.halfX = axisX * (0.5f * light.size.x);
-        shape.halfY = axisY * (0.5f * light.size.y);
-        shape.area = 4 * glm::length(glm::cross(shape.halfX, shape.halfY));
+    if (light.type != LightType::Sphere) {
+        const bool isDisk = light.type == LightType::Disk;
+        shape.halfX = axisX * (isDisk ? light.radius : 0.5f * light.size.x);
+        shape.halfY = axisY * (isDisk ? light.radius : 0.5f * light.size.y);
+        shape.area = areaOf(shape);
         shape.rightAngled = areOrthogonal(shape.halfX, shape.halfY);
+        if (isDisk) shape.radius = std::sqrt(shape.area / kPi);
         return shape;
     }
-    const float scaleXy = 0.5f * (glm::length(axisX) + glm::length(axisY));
-    if (light.type == LightType::Sphere) {
-        shape.radius = light.radius * (2 * scaleXy + glm::length(axisZ)) * (1.0f / 3.0f);
-        shape.area = 4 * kPi * sqr(shape.radius);
-    } else {
-        shape.radius = light.radius * scaleXy;
-        shape.area = kPi * sqr(shape.radius);
-    }
+    shape.radius = light.radius * sphereScale(worldFromLight);
+    shape.area = 4 * kPi * sqr(shape.radius);
     // A frame across the normal, turned with the light.
     shape.halfX = axisX, shape.halfY = axisY;
     const Frame frame = frameOf(shape);
@@ -120,21 +127,15 @@ LightShape shapeAt(std::span<const LightShape> shapes, float time) {
     shape.halfX = glm::mix(a.halfX, b.halfX, t);
     shape.halfY = glm::mix(a.halfY, b.halfY, t);
     shape.normal = unitOr(glm::mix(a.normal, b.normal, t), a.normal);
-    shape.radius = glm::mix(a.radius, b.radius, t);
-    if (shape.type == LightType::Rectangle) {
-        const Vec3 across = glm::cross(shape.halfX, shape.halfY);
-        shape.area = 4 * glm::length(across);
-        shape.normal = unitOr(glm::dot(across, a.normal) < 0 ? -across : across, a.normal);
-        shape.rightAngled = areOrthogonal(shape.halfX, shape.halfY);
-    } else if (shape.type == LightType::Sphere) {
+    if (shape.type == LightType::Sphere) {
+        shape.radius = glm::mix(a.radius, b.radius, t);
         shape.area = 4 * kPi * sqr(shape.radius);
-    } else {
-        // A disk in the plane across its normal, as it is intersected.
-        const Frame frame = frameOf(shape);
-        shape.halfX = frame.x * shape.radius;
-        shape.halfY = -frame.y * shape.radius;
-        shape.area = kPi * sqr(shape.radius);
+        return shape;
     }
+    const Vec3 across = glm::cross(shape.halfX, shape.halfY);
+    shape.area = areaOf(shape);
+    shape.normal = unitOr(glm::dot(across, a.normal) < 0 ? -across : across, a.normal);
+    shape.rightAngled = areOrthogonal(shape.halfX, shape.halfY);
     return shape;
 }
 

@@ -17,14 +17,16 @@ namespace lumi {
 struct LightShape {
     LightType type = LightType::Rectangle;
     Vec3 centre{0};
-    Vec3 halfX{1, 0, 0}, halfY{0, 1, 0};  ///< to the middle of an edge, or to the rim
+    Vec3 halfX{1, 0, 0}, halfY{0, 1, 0};  ///< to the middle of an edge, or conjugate radii: a disk may be an ellipse
     Vec3 normal{0, 0, -1};                ///< unit; where the flat ones emit
-    float radius = 1;                     ///< sphere: world space
+    float radius = 1;                     ///< sphere, disk that isCircle(): world space
     float area = 1;                       ///< m^2, of the emitting side
     bool rightAngled = true;              ///< halfX and halfY are orthogonal
     Vec3 radiance{1};
     const Texture* texture = nullptr;  ///< of the flat ones: times radiance, level 0; it belongs to the scene
 
+    /// Of a disk: is it round?
+    bool isCircle() const;
     /// Radiance of the point named (u, v). Seen from the front, u grows to the left and v upwards.
     Vec3 radianceAt(Vec2 uv) const { return texture ? radiance * texel(uv) : radiance; }
     /// Mean luminance over the body; not 0 while some of it shines.
@@ -40,13 +42,7 @@ private:
     Vec3 texel(Vec2 uv) const;
 };
 
-/// True for the light types that have a body.
-inline bool hasBody(LightType type) {
-    return type == LightType::Rectangle || type == LightType::Disk || type == LightType::Sphere;
-}
-
-/// The shape of `light`, which has a body, under its transform. Spheres and disks take the mean scale of the axes that
-/// span them.
+/// The shape of `light`, which has a body, under its transform: a sphere stays one by sphereScale().
 LightShape lightShape(const Light& light, const Mat4& worldFromLight);
 
 /// Its shapes under several.

@@ -221,7 +221,7 @@ bool Lights::samplePunctual(const Point& point, const LightReceiver& receiver, L
     Vec3 place = point.position, axis = point.axis;
     if (point.track >= 0) {
         const Mat4 frame = frameAt(point.track, receiver.time);
-        place = Vec3(frame[3]), axis = glm::normalize(-Vec3(frame[2]));
+        place = Vec3(frame[3]), axis = unitOr(-Vec3(frame[2]), point.axis);
     }
     const Vec3 toLight = place - receiver.position;
     const float distance2 = glm::dot(toLight, toLight);

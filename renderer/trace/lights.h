@@ -158,7 +158,7 @@ private:
     Mat4 frameAt(int track, float time) const;
     int addTrack(const std::vector<Mat4>& frames);
     Vec3 towards(const Sun& sun, float time) const {
-        return sun.track < 0 ? sun.towards : glm::normalize(Vec3(frameAt(sun.track, time)[2]));
+        return sun.track < 0 ? sun.towards : unitOr(Vec3(frameAt(sun.track, time)[2]), sun.towards);
     }
 
     const SceneTables* tables_ = nullptr;

@@ -190,9 +190,9 @@ void Lights::addPoints(const PosedScene& posed, Collected& collected) {
         const Mat4& frame = posed.lights[i].worldFromLight;
         const std::vector<Mat4>& frames = posed.lights[i].track;
         Point point{Vec3(frame[3]),
-                    glm::normalize(-Vec3(frame[2])),
+                    unitOr(-Vec3(frame[2]), Vec3(0, 0, -1)),
                     light.intensity * light.power,
-                    addTrack(frames),
+                    -1,
                     light.range,
                     0,
                     1};
@@ -208,15 +208,18 @@ void Lights::addPoints(const PosedScene& posed, Collected& collected) {
             bounds.cosSpread = 1;
             bounds.cosReach = std::max(cosOuter - 1e-6f, 0.0f);
         }
+        const float weight = luminance(point.intensity) * solidAngle;
+        if (!std::isfinite(weight)) continue;
+        point.track = addTrack(frames);
         for (const Mat4& later : frames) {
             LightBounds moved = bounds;
             moved.box = {Vec3(later[3]), Vec3(later[3])};
-            moved.axis = glm::normalize(-Vec3(later[2]));
+            moved.axis = unitOr(-Vec3(later[2]), point.axis);
             bounds = swept(bounds, moved);
         }
         entries_.push_back({Kind::Point, static_cast<uint32_t>(points_.size())});
         points_.push_back(point);
-        collected.weights.push_back(luminance(point.intensity) * solidAngle);
+        collected.weights.push_back(weight);
         collected.bounds.push_back(bounds);
     }
 }
@@ -227,8 +230,10 @@ void Lights::addInfinite(const PosedScene& posed, Collected& collected) {
         const Light& light = posed.scene->lights[i];
         if (light.type != LightType::Directional) continue;
         Sun sun;
-        sun.towards = glm::normalize(Vec3(posed.lights[i].worldFromLight[2]));
+        sun.towards = unitOr(Vec3(posed.lights[i].worldFromLight[2]), Vec3(0, 0, 1));
         sun.irradiance = light.irradiance * light.power;
+        const float weight = luminance(sun.irradiance) * kPi * sqr(radius);
+        if (!std::isfinite(weight)) continue;
         sun.track = addTrack(posed.lights[i].track);
         if (light.angleDeg > 0) {
             const float half = std::min(radians(light.angleDeg) * 0.5f, kPi / 2);
@@ -239,7 +244,7 @@ void Lights::addInfinite(const PosedScene& posed, Collected& collected) {
         }
         entries_.push_back({Kind::Directional, static_cast<uint32_t>(suns_.size())});
         suns_.push_back(sun);
-        collected.weights.push_back(luminance(sun.irradiance) * kPi * sqr(radius));
+        collected.weights.push_back(weight);
     }
     if (environment_.black()) return;
     // What the sky sends into a sphere around the scene.

@@ -11,15 +11,19 @@ using namespace test;
 constexpr float kAlbedo = 0.8f;
 constexpr double kMostSigmas = 4.5;
 
-/// Looks down at the origin of a floor that is lit by one light.
-Estimate seenOnFloor(const Light& light, const Mat4& worldFromLight, int count, DirectStrategy strategy) {
-    TinyScene tiny;
+/// Looks down at the origin of a floor that is lit by the scene's lights.
+Estimate seenOnFloor(TinyScene tiny, int count, DirectStrategy strategy) {
     tiny.add(floorMesh(), lambert(kAlbedo));
-    tiny.addLight(light, worldFromLight);
     Tracer tracer;
     tracer.bind(tiny.pose());
     // From the side and below every light.
     return radianceAlong(tracer, Vec3(0.6f, 0.3f, 0.2f), Vec3(-0.6f, -0.3f, -0.2f), count, plainPaths(1, strategy));
+}
+
+Estimate seenOnFloor(const Light& light, const Mat4& worldFromLight, int count, DirectStrategy strategy) {
+    TinyScene tiny;
+    tiny.addLight(light, worldFromLight);
+    return seenOnFloor(tiny, count, strategy);
 }
 
 Mat4 lightAt(const Vec3& position, const Vec3& target) { return lookAt(position, target, Vec3(0, 0, 1)); }
@@ -77,6 +81,25 @@ TEST_P(ClosedForms, DiskLight) {
     const double expected = kAlbedo * 2 * 0.25 / (0.25 + 1);
     const Estimate e = seenOnFloor(light, lightAt(Vec3(0, 1, 0), Vec3(0)), 60000, GetParam());
     EXPECT_LT(e.z(expected), kMostSigmas) << e.mean << " against " << expected;
+}
+
+/// An ellipse of radii a, b above the origin at height h, facing it: its form factor is a b / sqrt((a^2 + h^2)(b^2 +
+/// h^2)), that of its cone's quadric. By scale and by shear.
+TEST_P(ClosedForms, EllipticDiskLight) {
+    Light light;
+    light.type = LightType::Disk;
+    light.radius = 0.5f;
+    light.radiance = Vec3(2);
+    const Mat4 frame = lightAt(Vec3(0, 1, 0), Vec3(0));
+    const auto expected = [](double a, double b) { return kAlbedo * 2 * a * b / std::sqrt((a * a + 1) * (b * b + 1)); };
+    const Estimate wide = seenOnFloor(light, frame * scaling(Vec3(3, 1, 1)), 60000, GetParam());
+    EXPECT_LT(wide.z(expected(1.5, 0.5)), kMostSigmas) << wide.mean << " against " << expected(1.5, 0.5);
+    // A shear by 1 has the singular values (sqrt(5) +- 1) / 2.
+    Mat4 shear(1);
+    shear[1].x = 1;
+    const double golden = (std::sqrt(5.0) + 1) / 2;
+    const Estimate sheared = seenOnFloor(light, frame * shear, 60000, GetParam());
+    EXPECT_LT(sheared.z(expected(0.5 * golden, 0.5 / golden)), kMostSigmas) << sheared.mean;
 }
 
 TEST_P(ClosedForms, DirectionalLightOfTenDegrees) {
@@ -179,6 +202,109 @@ TEST(DirectionalLight, DeltaGivesItsIrradiance) {
     const Vec3 from(0.5f, 1, 0.2f);
     const double expected = kAlbedo / kPi * 3 * glm::normalize(from).y;
     EXPECT_NEAR(seenOnFloor(light, lightAt(from, Vec3(0)), 4, DirectStrategy::Mis).mean, expected, 1e-5 * expected);
+}
+
+/// A node at `position` that turns the light to the origin, scaled by `scale`.
+void addScaledLight(TinyScene& tiny, Light light, const Vec3& position, const Vec3& scale) {
+    Node node;
+    node.local.translation = position;
+    node.local.rotation = glm::normalize(glm::quat_cast(Mat3(lightAt(position, Vec3(0)))));
+    node.local.scale = scale;
+    light.node = static_cast<int>(tiny.scene.nodes.size());
+    tiny.scene.nodes.push_back(node);
+    tiny.scene.lights.push_back(light);
+}
+
+const Vec3 kVanishingScales[] = {Vec3(0),       Vec3(1e-20f),  Vec3(1e-30f), Vec3(1e-42f),
+                                 Vec3(1, 1, 0), Vec3(0, 1, 1), Vec3(0, 0, 1)};
+
+TEST(DirectionalLight, ScaleChangesNeitherItNorTheOthers) {
+    Light light;
+    light.type = LightType::Directional;
+    light.irradiance = Vec3(3);
+    const Vec3 from(0.5f, 1, 0.2f), scaledFrom(-0.3f, 0.8f, 0.4f);
+    const double one = kAlbedo / kPi * 3 * glm::normalize(from).y;
+    const double both = one + kAlbedo / kPi * 3 * glm::normalize(scaledFrom).y;
+    for (const Vec3& scale : kVanishingScales) {
+        TinyScene tiny;
+        tiny.addLight(light, lightAt(from, Vec3(0)));
+        addScaledLight(tiny, light, scaledFrom, scale);
+        const Estimate e = seenOnFloor(tiny, 60000, DirectStrategy::Mis);
+        EXPECT_LT(e.z(both), kMostSigmas) << e.mean << " against " << both << " by " << scale.x << ' ' << scale.z;
+    }
+}
+
+TEST(DirectionalLight, UnderAParentOfScaleZeroTurnsAsItsNodes) {
+    Light light;
+    light.type = LightType::Directional;
+    light.irradiance = Vec3(3);
+    const Vec3 from(0.5f, 1, 0.2f);
+    TinyScene tiny;
+    addScaledLight(tiny, light, from, Vec3(1));
+    Node parent;
+    parent.local.scale = Vec3(0);
+    tiny.scene.nodes = {parent, tiny.scene.nodes[0]};
+    tiny.scene.nodes[1].parent = 0;
+    tiny.scene.lights[0].node = 1;
+    const double expected = kAlbedo / kPi * 3 * glm::normalize(from).y;
+    EXPECT_NEAR(seenOnFloor(tiny, 4, DirectStrategy::Mis).mean, expected, 1e-5 * expected);
+}
+
+/// Of a matrix of zeros nothing is known of where the light looks; the other one must not care.
+TEST(DirectionalLight, WithoutAFrameLeavesTheOthersAlone) {
+    Light light;
+    light.type = LightType::Directional;
+    light.irradiance = Vec3(3);
+    const Vec3 from(0.5f, 1, 0.2f);
+    TinyScene tiny;
+    tiny.addLight(light, lightAt(from, Vec3(0)));
+    tiny.addLight(light, scaling(Vec3(0)));  // seen from the floor, on its horizon
+    const double expected = kAlbedo / kPi * 3 * glm::normalize(from).y;
+    const Estimate e = seenOnFloor(tiny, 4000, DirectStrategy::Mis);
+    EXPECT_LT(e.z(expected), kMostSigmas) << e.mean << " against " << expected;
+}
+
+TEST(DirectionalLight, OfNoFiniteStrengthLeavesTheOthersAlone) {
+    Light light;
+    light.type = LightType::Directional;
+    light.irradiance = Vec3(3);
+    const Vec3 from(0.5f, 1, 0.2f);
+    TinyScene tiny;
+    tiny.addLight(light, lightAt(from, Vec3(0)));
+    for (const float strength : {kInfinity, std::nanf("")}) {
+        light.irradiance = Vec3(strength);
+        tiny.addLight(light, lightAt(Vec3(0, 1, 0), Vec3(0)));
+    }
+    const double expected = kAlbedo / kPi * 3 * glm::normalize(from).y;
+    EXPECT_NEAR(seenOnFloor(tiny, 4, DirectStrategy::Mis).mean, expected, 1e-5 * expected);
+}
+
+TEST(SpotLight, TakesNoScale) {
+    Light light;
+    light.type = LightType::Spot;
+    light.intensity = Vec3(4);
+    light.innerConeDeg = 20, light.outerConeDeg = 40;
+    for (const Vec3& scale : kVanishingScales) {
+        TinyScene tiny;
+        addScaledLight(tiny, light, Vec3(0, 1, 0), scale);
+        EXPECT_NEAR(seenOnFloor(tiny, 4, DirectStrategy::Mis).mean, kAlbedo / kPi * 4, 1e-4)
+            << scale.x << ' ' << scale.z;
+    }
+}
+
+TEST(LightsWithABody, OfScaleZeroAreDarkAndLeaveTheOthersAlone) {
+    Light light;
+    light.radiance = Vec3(2), light.intensity = Vec3(6);
+    TinyScene tiny;
+    for (const LightType type : {LightType::Rectangle, LightType::Disk, LightType::Sphere}) {
+        light.type = type;
+        for (const Vec3& scale : {Vec3(0), Vec3(1e-30f), Vec3(0, 0, 1)})
+            addScaledLight(tiny, light, Vec3(0.2f, 1, 0.3f), scale);
+    }
+    light.type = LightType::Point;
+    tiny.addLight(light, translation(Vec3(0, 1, 0)));
+    const Estimate e = seenOnFloor(tiny, 20000, DirectStrategy::Mis);
+    EXPECT_LT(e.z(kAlbedo / kPi * 6), kMostSigmas) << e.mean;
 }
 
 TEST(FlatLights, AreBlackFromBehindAndBlock) {

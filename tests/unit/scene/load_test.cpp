@@ -76,6 +76,28 @@ TEST(LoadScene, BrokenFilesSayWhereAndWhy) {
     }
 }
 
+TEST(LoadScene, StretchedSphereLightsAreNamed) {
+    TemporaryFolder folder;
+    const auto warningsOf = [&](const std::string& kind, const std::string& scale) {
+        writeFileAtomically(folder / "lamps.json", std::string_view(R"({"version": 1,
+            "assets": {"ball": {"sphere": {"radius": 1}}}, "materials": {"m": {}},
+            "instances": [{"asset": "ball", "material": "m"}, {"name": "group", "scale": )" +
+                                                                    scale + R"(}],
+            "lights": {"lamp": {)" + kind + R"(, "radiance": [1, 1, 1], "parent": "group"}}})"));
+        MessageLog log;
+        loadScene(folder / "lamps.json", log);
+        return log.warnings();
+    };
+    const std::string sphere = R"("sphere": {"radius": 0.5})";
+    const std::vector<std::string> warnings = warningsOf(sphere, "[3, 1, 1]");
+    ASSERT_EQ(warnings.size(), 1u);
+    for (const char* part : {"lamps.json", "\"lamp\"", "3 x 1 x 1", "same area", "radius 0.78"})
+        EXPECT_NE(warnings[0].find(part), std::string::npos) << warnings[0];
+    EXPECT_TRUE(warningsOf(sphere, "[1, 1.005, 1]").empty());
+    EXPECT_TRUE(warningsOf(sphere, "[2, 2, 2]").empty());
+    EXPECT_TRUE(warningsOf(R"("disk": {"radius": 0.5})", "[3, 1, 1]").empty()) << "shown as the ellipse that it is";
+}
+
 TEST(LoadScene, OurOwnFilesStayDarkButGetACamera) {
     TemporaryFolder folder;
     writeFileAtomically(

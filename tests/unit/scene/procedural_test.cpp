@@ -259,6 +259,19 @@ TEST(LightBody, BodiesAreAddedOnceAndFollowTheirLight) {
     EXPECT_EQ(scene.materials.size(), 1u);
 }
 
+TEST(LightBody, StretchedSpheresKeepTheAreaOfTheirEllipsoid) {
+    const auto scaled = [](const Vec3& s) { return sphereScale(glm::scale(Mat4(1), s)); };
+    EXPECT_EQ(scaled(Vec3(2)), 2);
+    EXPECT_EQ(scaled(Vec3(0)), 0);
+    EXPECT_EQ(scaled(Vec3(0, 0, 5)), 0) << "a needle has no area";
+    // A prolate and an oblate spheroid of axes 3 and 1, and both sides of a disk.
+    const double e = std::sqrt(8.0) / 3;
+    const double prolate = 0.5 * (1 + 3 / e * std::asin(e)), oblate = 0.5 * (9 + std::atanh(e) / e);
+    EXPECT_NEAR(scaled({3, 1, 1}), std::sqrt(prolate), 0.006 * std::sqrt(prolate));
+    EXPECT_NEAR(scaled({3, 1, 3}), std::sqrt(oblate), 0.006 * std::sqrt(oblate));
+    EXPECT_NEAR(scaled({1, 1, 0}), std::sqrt(0.5), 0.006);
+}
+
 TEST(LightBody, LightsOfOneSizeShareTheirs) {
     Scene scene;
     scene.nodes.emplace_back();
