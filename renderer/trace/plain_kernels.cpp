@@ -32,7 +32,8 @@ LUMI_LANE Pair albedoTowards(const AlbedoView& view, float alpha, float tableRow
     const float c = within(cosTheta, 0.0f, 1.0f), side2 = alpha * alpha * (1 - c * c);
     const float length = std::sqrt(c * c + side2);
     const float column = 1 / (1 + std::sqrt(side2 / most((length + c) * c, 1e-30f)));
-    const float x = column * static_cast<float>(view.columns - 1);
+    // A light sample without a direction is dropped later: here it must be a place of the table all the same.
+    const float x = most(0.0f, column * static_cast<float>(view.columns - 1));
     int first = static_cast<int>(x);
     first = first < 0 ? 0 : first > view.columns - 2 ? view.columns - 2 : first;
     int row = static_cast<int>(tableRow);
