@@ -348,7 +348,10 @@ bool Integrator::continuePath(PathState& path, const Surface& surface, const Fra
     ++(diffuse ? path.diffuseCount : path.specularCount);
     path.diffuseBefore |= diffuse;
     path.cone.spread = std::max(path.cone.spread, spreadOf(diffuse, surface.inputs.roughness));
-    path.absorption = absorptionTowards(path, surface, sample.wi.z < 0);
+    if (sample.wi.z < 0 && surface.inputs.solid) {
+        path.media = mediaTowards(path, surface, true);
+        path.absorption = absorptionIn(scene_.tables, path.media);
+    }
     path.ray.origin =
         offsetOrigin(surface.position, side > 0 ? surface.geometricNormal : -surface.geometricNormal, surface.offset);
     path.ray.direction = direction;

@@ -26,7 +26,7 @@ void Integrator::sampleLight(PathBatch& batch, uint32_t index, const Surface& su
     // The sky's radiance is looked up when the shadow ray has found it: most samples never wait for that memory.
     Vec3 radiance = light.sky ? Vec3(weight) : light.radiance * weight;
     if (std::isfinite(light.distance))
-        radiance *= transmittance(absorptionTowards(path, surface, wi.z < 0), light.distance);
+        radiance *= transmittance(absorptionIn(scene_.tables, mediaTowards(path, surface, wi.z < 0)), light.distance);
     const Vec3 diffuse = f.diffuse * radiance, specular = f.specular * radiance, sum = diffuse + specular;
     if (isBlack(sum)) return;
     if (!isFinite(sum * path.throughput)) {

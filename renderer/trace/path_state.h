@@ -28,7 +28,8 @@ struct PathState {
     Vec3 radiance{0};
     LightReceiver scatter;  ///< the last scattering: what densities of light samples refer to
     float scatterPdf = 0;   ///< per solid angle; 0 after a delta lobe
-    Vec3 absorption{0};     ///< 1/m, of the solid the path is in
+    MediumStack media;
+    Vec3 absorption{0};  ///< 1/m, of the innermost of them
     SampleStream stream;
     uint32_t hash = 0;  ///< see pathHash()
     uint32_t slot = 0, sample = 0;
@@ -54,10 +55,19 @@ inline Vec3 transmittance(const Vec3& absorption, float distance) {
     return isBlack(absorption) ? Vec3(1) : glm::exp(-absorption * distance);
 }
 
-/// Of what lies on one side of a surface: past the boundary of a solid, into it or out of it, else what the path is in.
-inline Vec3 absorptionTowards(const PathState& path, const Surface& surface, bool farSide) {
-    if (!farSide || !surface.inputs.solid) return path.absorption;
-    return surface.inputs.entering ? surface.absorption : Vec3(0);
+/// The solids on one side of a surface: past the boundary of one, with it or without, else those the path is in.
+inline MediumStack mediaTowards(const PathState& path, const Surface& surface, bool farSide) {
+    MediumStack media = path.media;
+    if (!farSide || !surface.inputs.solid) return media;
+    if (surface.inputs.entering) media.enter(surface.material);
+    else media.leave(surface.material);
+    return media;
+}
+
+/// 1/m.
+inline Vec3 absorptionIn(const SceneTables& tables, const MediumStack& media) {
+    const uint32_t material = media.innermost();
+    return material == MediumStack::kNone ? Vec3(0) : tables.materials[material].absorption;
 }
 
 /// Scratch of the integrator for one batch; reused from batch to batch. Belongs to one thread at a time.

@@ -17,9 +17,8 @@ struct Surface {
     bool frontFace = true;          ///< wo is on the front (outer) side
     int body = -1;                  ///< a light's body, which scatters nothing
     uint32_t material = 0;
-    float offset = 0;    ///< metres that rays start off the surface beyond rounding of `position` itself
-    Vec3 emitted{0};     ///< radiance towards wo
-    Vec3 absorption{0};  ///< 1/m inside the solid behind this surface
+    float offset = 0;  ///< metres that rays start off the surface beyond rounding of `position` itself
+    Vec3 emitted{0};   ///< radiance towards wo
     BsdfInputs inputs;
 };
 

@@ -63,7 +63,6 @@ void evaluateMaterial(const MaterialRecord& m, TextureLookups& lookup, Surface& 
     in.specular = unitInterval(in.specular), in.transmission = unitInterval(in.transmission);
     in.specularColor = glm::max(in.specularColor, Vec3(0));
     if (!(in.ior >= 1) || !std::isfinite(in.ior)) in.ior = 1.5f;
-    surface.absorption = m.absorption;
     if (m.layered) evaluateLayers(*m.source, lookup, in);
 
     surface.emitted = Vec3(0);

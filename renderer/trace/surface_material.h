@@ -4,7 +4,7 @@
 
 namespace lumi {
 
-/// Fills the material side of `surface` (inputs, emission, absorption): factors times textures times vertex colour.
+/// Fills the material side of `surface` (inputs, emission): factors times textures times vertex colour.
 /// Values that are not finite or out of range become the nearest that are valid.
 void evaluateMaterial(const MaterialRecord& material, TextureLookups& lookup, Surface& surface);
 

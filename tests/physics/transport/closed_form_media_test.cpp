@@ -3,6 +3,7 @@
 
 #include "support/transport_scene.h"
 #include "trace/bsdf.h"
+#include "trace/medium_stack.h"
 #include "trace/surface.h"
 #include "trace/trace_scene.h"
 
@@ -186,6 +187,44 @@ TEST(Absorption, SlabFollowsBeerLambert) {
     const double expected = r + (1 - r) * (1 - r) * a / (1 - r * a);
     const Estimate e = radianceAlong(tracer, Vec3(0.2f, 3, 0.1f), Vec3(0, -1, 0), 60000, plainPaths(32));
     EXPECT_NEAR(e.mean, expected, kMostSigmas * e.standardError + 1e-3 * expected);
+}
+
+// A clear cube in the middle of an absorbing one, which goes on behind it.
+TEST(Absorption, GoesOnBehindASolidInside) {
+    TinyScene tiny;
+    Material drink = glass(0);
+    drink.ior = 1.0001f;
+    drink.attenuationColor = Vec3(0.25f);
+    drink.attenuationDistance = 0.5f;
+    Material ice = glass(0);
+    ice.ior = 1.0001f;
+    tiny.add(boxMesh(Vec3(4, 1, 4)), drink);
+    tiny.add(boxMesh(Vec3(1, 0.5f, 1)), ice);
+    tiny.scene.environment.constant = Vec3(1);
+    Tracer tracer;
+    tracer.bind(tiny.pose());
+    const double expected = 0.25;  // half a metre of it
+    const Estimate e = radianceAlong(tracer, Vec3(0.2f, 3, 0.1f), Vec3(0, -1, 0), 20000, plainPaths(8));
+    EXPECT_NEAR(e.mean, expected, kMostSigmas * e.standardError + 2e-3 * expected);
+}
+
+TEST(Absorption, SolidsAreLeftInAnyOrder) {
+    MediumStack media;
+    EXPECT_EQ(media.innermost(), MediumStack::kNone);
+    media.leave(7);
+    EXPECT_EQ(media.innermost(), MediumStack::kNone) << "a camera that began inside";
+    for (const uint32_t material : {1u, 2u, 3u}) media.enter(material);
+    media.leave(2);
+    EXPECT_EQ(media.innermost(), 3u);
+    media.leave(3);
+    EXPECT_EQ(media.innermost(), 1u);
+    media.leave(1);
+    EXPECT_EQ(media.innermost(), MediumStack::kNone);
+    for (uint32_t material = 1; material <= 6; ++material) media.enter(material);
+    for (uint32_t material = 6; material > 2; --material) {
+        EXPECT_EQ(media.innermost(), material);
+        media.leave(material);
+    }
 }
 
 TEST(Transmission, ThinWallIsSeenStraightThrough) {
