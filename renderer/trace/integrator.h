@@ -76,6 +76,8 @@ private:
     void continuePlain(PathBatch& batch, int lane, int depth, bool lastRay) const;
     static float spreadOf(bool diffuse, float roughness);
     void addLights(PathBatch& batch, int depth) const;
+    Vec3 straightThrough(const Surface& surface, const Vec3& direction) const;
+    void passThinWalls(PathBatch& batch, TraceCounts& counts) const;
     void traceShadows(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const;
     LightReceiver receiverAt(const PathState& path, const Surface& surface) const;
     float misWeight(float pdf, float otherPdf) const;

@@ -53,7 +53,12 @@ void Integrator::sampleLight(PathBatch& batch, uint32_t index, const Surface& su
         ray.tmax = length;
     }
     // With the throughput of now: the path goes on before its shadow rays are traced.
-    batch.pending.push_back({index, path.throughput * sum, light.sky, light.skyPlace});
+    PendingLight& pending = batch.pending.emplace_back();
+    pending.path = index;
+    pending.contribution = path.throughput * sum;
+    pending.delta = light.delta;
+    pending.sky = light.sky;
+    pending.skyPlace = light.skyPlace;
     if (vertex) batch.splits.push_back({diffuse, specular});
     batch.shadowRays.push_back(ray);
 }
@@ -78,6 +83,8 @@ void Integrator::traceShadows(PathBatch& batch, int depth, bool coherent, TraceC
     } else {
         occludedRays(scene_.embree, batch.shadowRays, batch.blocked, coherence);
     }
+    // Widened walls scatter: their own light samples find the light.
+    if (scene_.tables.thinWalls && scene_.lights.hasDelta() && !settings_.regularize) passThinWalls(batch, counts);
     addLights(batch, depth);
 }
 
@@ -99,8 +106,8 @@ void Integrator::addLights(PathBatch& batch, int depth) const {
         PathVertex& vertex = batch.vertices[batch.vertexOf[light.path]];
         vertex.lightVisible = true;
         if (!isFinite(contribution)) continue;
-        vertex.directDiffuse = batch.splits[i].diffuse * factor;
-        vertex.directSpecular = batch.splits[i].specular * factor;
+        vertex.directDiffuse = batch.splits[i].diffuse * light.through * factor;
+        vertex.directSpecular = batch.splits[i].specular * light.through * factor;
     }
 }
 

@@ -232,6 +232,7 @@ void Integrator::pendPlainLights(PathBatch& batch, int depth) const {
         PendingLight& pending = batch.pending.emplace_back();
         pending.path = index;
         pending.contribution = lanes.lightContribution.get<Vec3>(i);
+        pending.delta = scene_.lights.isDelta(entry);
         pending.sky = scene_.lights.isSky(entry);
         if (pending.sky) pending.skyPlace.x = batch.lights.skyU[i], pending.skyPlace.y = batch.lights.skyV[i];
         BatchRay& ray = batch.shadowRays.emplace_back();

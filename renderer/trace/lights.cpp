@@ -22,6 +22,17 @@ int Lights::entryOf(uint32_t instance, uint32_t primitive) const {
     return static_cast<int>(triangleEntry_[first + primitive]);
 }
 
+bool Lights::isDelta(uint32_t entry) const {
+    const Entry& light = entries_[entry];
+    return light.kind == Kind::Point || (light.kind == Kind::Directional && suns_[light.index].oneMinusCos <= 0);
+}
+
+std::optional<SurfacePoint> Lights::triangleOf(uint32_t entry) const {
+    if (entry >= entries_.size() || entries_[entry].kind != Kind::Triangle) return std::nullopt;
+    const Triangle& triangle = triangles_[entries_[entry].index];
+    return SurfacePoint{triangle.instance, triangle.primitive};
+}
+
 float Lights::infiniteImportance(const LightReceiver& receiver, uint32_t infinite) const {
     using Facing = LightReceiver::Facing;
     if (infinite == suns_.size()) {

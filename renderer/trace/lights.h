@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -66,6 +67,8 @@ public:
     /// The sky's radiance is 1, to be multiplied by what its place has. Choice i and receiver i are those of lane i.
     void samplePoints(std::span<const Choice> choices, std::span<const LightReceiver> receivers, LightLanes& lights,
                       PlainLanes& lanes) const;
+    /// Is it without extent, so that no continued path finds it?
+    bool isDelta(uint32_t entry) const;
     bool isSky(uint32_t entry) const { return !environment_.black() && entry + 1 == entries_.size(); }
 
     /// Chooses a light by `pick` and a point of it by `u`. False if nothing can reach the receiver that way.
@@ -99,6 +102,8 @@ public:
     float pickProbability(const LightReceiver& receiver, uint32_t entry) const;
     /// The entry of an emissive triangle, or -1.
     int entryOf(uint32_t instance, uint32_t primitive) const;
+    /// And back: an entry's triangle, its instance and primitive alone; none if it is no triangle.
+    std::optional<SurfacePoint> triangleOf(uint32_t entry) const;
     size_t byteCount() const;
 
 private:

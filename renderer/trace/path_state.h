@@ -5,6 +5,7 @@
 #include "trace/light_lanes.h"
 #include "trace/light_receiver.h"
 #include "trace/lights.h"
+#include "trace/medium_stack.h"
 #include "trace/observer.h"
 #include "trace/packets.h"
 #include "trace/plain_kernels.h"
@@ -42,6 +43,8 @@ struct PathState {
 struct PendingLight {
     uint32_t path = 0;
     Vec3 contribution{0};  ///< to the path, throughput included
+    Vec3 through{1};       ///< of thin walls on the way, in `contribution`, not yet in its split
+    bool delta = false;    ///< without extent
     bool sky = false;      ///< it and its split are still to be multiplied by the sky's radiance at `skyPlace`
     Vec2 skyPlace{0};
 };

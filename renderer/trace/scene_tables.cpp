@@ -26,6 +26,7 @@ MaterialRecord makeMaterial(const Material& m) {
     mark(m.specularColorTexture, MaterialRecord::kSpecularColor);
     mark(m.transmissionTexture, MaterialRecord::kTransmission);
     r.solid = m.isSolid();
+    r.thinWall = m.transmission > 0 && !r.solid;
     r.layered = m.isLayered();
     r.doubleSided = m.doubleSided;
     r.emits = m.emits();
@@ -113,10 +114,10 @@ InstanceRecord makeInstance(const PosedScene& posed, const EmbreeScene& embree, 
         r.positions = dataOrNull(pose.deformed->positions);
         if (!pose.deformed->normals.empty()) r.normals = pose.deformed->normals.data();
         r.deformedTangents = dataOrNull(pose.deformed->tangents);
-        count = pose.deformed->positions.size();
         r.deformedBitangents = dataOrNull(pose.deformed->bitangents);
         r.turned = pose.deformed->isMirrored();
         r.mirrored = r.mirrored != r.turned;
+        count = pose.deformed->positions.size();
     }
     float largestRow = 0;
     const auto addRows = [&](const Mat4& m) {
@@ -143,7 +144,10 @@ SceneTables makeSceneTables(const PosedScene& posed, const EmbreeScene& embree) 
         for (int64_t i = begin; i < end; ++i)
             tables.instances[static_cast<size_t>(i)] = makeInstance(posed, embree, static_cast<uint32_t>(i));
     });
-    for (const Material& material : scene.materials) tables.materials.push_back(makeMaterial(material));
+    for (const Material& material : scene.materials) {
+        tables.materials.push_back(makeMaterial(material));
+        tables.thinWalls |= tables.materials.back().thinWall;
+    }
     static const Material kNone;
     if (tables.materials.empty()) tables.materials.push_back(makeMaterial(kNone));
     for (MaterialRecord& material : tables.materials) addViews(material, tables.textures);

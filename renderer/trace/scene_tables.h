@@ -67,6 +67,7 @@ struct MaterialRecord {
     bool solid = false, doubleSided = true, emits = false;
     bool unlit = false;           ///< the instance's colours multiply the emission
     bool coatedEmission = false;  ///< it emits through a clearcoat
+    bool thinWall = false;        ///< it transmits, and is no solid
     bool layered = false;         ///< the source's clearcoat, sheen, anisotropy or iridescence take part
     float metallic = 0, roughness = 0.5f, ior = 1.5f, specular = 1, transmission = 0;
     Vec3 baseColor{1}, specularColor{1}, emission{0};
@@ -103,6 +104,7 @@ struct SceneTables {
     std::vector<MaterialRecord> materials;
     std::vector<BodyRecord> bodies;
     std::vector<TextureView> textures;
+    bool thinWalls = false;  ///< of some material
     size_t byteCount() const;
 };
 

@@ -248,6 +248,35 @@ TEST(Transmission, ThinWallIsSeenStraightThrough) {
     EXPECT_LT(e.z(f + (1 - f) * 0.8 * 5), kMostSigmas) << e.mean;
 }
 
+// A light without extent is found by light samples alone, so they go through panes as continued paths do.
+TEST(Transmission, LightsWithoutExtentShineThroughPanes) {
+    Material pane = glass(0);
+    pane.thickness = 0;
+    pane.baseColor = Vec3(0.8f);
+    const double f = 0.04, through = (1 - f) * 0.8;  // at normal incidence
+    for (const bool sun : {true, false})
+        for (const int panes : {0, 1, 2}) {
+            TinyScene tiny;
+            tiny.add(floorMesh(), lambert(1));
+            for (int i = 0; i < panes; ++i)
+                tiny.add(rectangleMesh(2, 2, Facing::Y), pane,
+                         translation(Vec3(0, 1 + 0.5f * static_cast<float>(i), 0)));
+            Light light;
+            light.type = sun ? LightType::Directional : LightType::Point;
+            light.irradiance = Vec3(kPi);
+            light.intensity = Vec3(4 * kPi);
+            tiny.addLight(light, lookAt(Vec3(0, 2, 0), Vec3(0), Vec3(0, 0, 1)));
+            Tracer tracer;
+            tracer.bind(tiny.pose());
+            const Estimate e = radianceAlong(tracer, Vec3(0.5f, 0.5f, 0), Vec3(-0.5f, -0.5f, 0), 64, plainPaths(1));
+            EXPECT_NEAR(e.mean, std::pow(through, panes), 2e-3) << panes << (sun ? " under a sun" : " under a lamp");
+            // Behind something that stands beyond the pane it is dark all the same.
+            tiny.add(rectangleMesh(0.2f, 0.2f, Facing::Y), lambert(0.5f), translation(Vec3(0, 1.9f, 0)));
+            tracer.bind(tiny.pose());
+            EXPECT_EQ(radianceAlong(tracer, Vec3(0.5f, 0.5f, 0), Vec3(-0.5f, -0.5f, 0), 64, plainPaths(1)).mean, 0);
+        }
+}
+
 TEST(Alpha, BlendedCoverageIsAlpha) {
     TinyScene tiny;
     Material veil = lambert(0);
