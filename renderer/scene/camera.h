@@ -47,6 +47,8 @@ struct CameraPose {
     Vec3 forward() const { return -Vec3(worldFromCamera[2]); }
     /// Height of a pixel's footprint at view depth 1 (perspective) or anywhere (orthographic), metres.
     float pixelSize() const { return 2 * halfHeight / static_cast<float>(extent.height); }
+    /// At `depth` metres before the eye.
+    float pixelSizeAt(float depth) const { return pixelSize() * (projection == Projection::Perspective ? depth : 1); }
     /// Continuous pixel and linear view depth of a world point. Behind a perspective camera the depth is negative and
     /// the pixel is that of the mirrored point; callers test the depth.
     Vec3 project(const Vec3& positionWorld) const;

@@ -10,7 +10,7 @@ namespace {
 
 /// The world point at a pixel and view depth.
 Vec3 placeAt(const CameraPose& pose, Vec2 pixel, float depth) {
-    const float size = pose.pixelSize() * (pose.projection == Projection::Perspective ? depth : 1.0f);
+    const float size = pose.pixelSizeAt(depth);
     const Vec2 centre(0.5f * static_cast<float>(pose.extent.width), 0.5f * static_cast<float>(pose.extent.height));
     return transformPoint(pose.worldFromCamera, Vec3((pixel.x - centre.x) * size, (centre.y - pixel.y) * size, -depth));
 }

@@ -334,6 +334,10 @@ bool Tracer::isOnLight(const SurfacePoint& point) const {
     return has(point) && impl_->scene.tables.instances[point.instance].body >= 0;
 }
 
+std::optional<SurfacePoint> Tracer::emittingTriangle(int light) const {
+    return light < 0 ? std::nullopt : impl_->scene.lights.triangleOf(static_cast<uint32_t>(light));
+}
+
 Vec3 Tracer::position(const SurfacePoint& point) const {
     return point.valid() ? surfacePosition(impl_->scene.tables, point) : Vec3(0);
 }

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
 
@@ -106,6 +107,8 @@ public:
     bool has(const SurfacePoint& point) const;
     /// Does it lie on the body of a light? All of a body is one primitive.
     bool isOnLight(const SurfacePoint& point) const;
+    /// The emissive triangle (instance and primitive) that a light of PathVertex::light is; none if it is another kind.
+    std::optional<SurfacePoint> emittingTriangle(int light) const;
     /// World position of a surface point, and of the same point in the previous frame.
     Vec3 position(const SurfacePoint& point) const;
     Vec3 previousPosition(const SurfacePoint& point) const;

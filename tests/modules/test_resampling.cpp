@@ -90,9 +90,10 @@ TEST(Occlusion, IsTheRatioOfDistances) {
     const TapSet none;
     StageTimer timer;
     Image measured, gathered;
+    Emitters emitters;
     const FrameContext context{0,        signals, *posed, sampling.camera, sampling.camera, {}, none, tracer,
                                sampling, timer,   {}};
-    ASSERT_TRUE(measureOcclusion(context, measured));
+    ASSERT_TRUE(measureOcclusion(context, emitters, measured));
     int blocked = 0, lit = 0;
     for (int y = 0; y < 72; ++y)
         for (int x = 0; x < 96; ++x) {

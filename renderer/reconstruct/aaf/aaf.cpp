@@ -58,14 +58,14 @@ void AafModule::describe(ParameterVisitor& v) {
               .max = 10,
               .help = "How many standard deviations of the filter the sharpest penumbra's own is wide"});
     v.integer("max-radius", maxRadius_,
-              {.label = "Largest radius", .min = 1, .max = 64, .unit = "px", .help = "Of the filter on the screen"});
+              {.label = "Largest radius", .min = 1, .max = 128, .unit = "px", .help = "Of the filter on the screen"});
     describeAntialiasing(v);
 }
 
 bool AafModule::filter(const FrameContext& context, const Step& step, Image& out) {
     {
         const auto measured = context.timer.measure("occlusion");
-        if (!measureOcclusion(context, measured_)) return false;
+        if (!measureOcclusion(context, emitters_, measured_)) return false;
         gatherOcclusion(context.signals, windowRadius_, measured_, occlusion_);
     }
     if (!integrate(context, step)) return false;
@@ -125,7 +125,7 @@ void AafModule::blur(const Signals& signals, const CameraPose& camera, bool alon
             float shift[3] = {0, 0, 0}, weights = 1;
             const bool surface = beta > 0 && z > 0 && object.at(0, x, y) != 0;
             // A footprint of a pixel that faces the camera; slanted ones reach their weights' end sooner.
-            const float pixels = surface ? std::max(1.0f, 2 * beta * z / camera.pixelSize()) : 0;
+            const float pixels = surface ? std::max(1.0f, 2 * beta / camera.pixelSizeAt(1 / z)) : 0;
             const int radius = static_cast<int>(std::min(pixels, static_cast<float>(maxRadius_)));
             for (int k = -radius; k <= radius; ++k) {
                 const int i = alongRows ? x + k : x, j = alongRows ? y : y + k;

@@ -1,4 +1,5 @@
 #pragma once
+#include "reconstruct/aaf/emitters.h"
 #include "reconstruct/screen_filter.h"
 
 namespace lumi {
@@ -20,7 +21,7 @@ namespace lumi {
 /// - So irradiance is noise that [Mehta12], which filters visibility alone, does not have: where the window holds no
 ///   blocker nothing is blurred, and that noise stays, but for what accumulation takes.
 /// - sigma is measured from the points that the frame sampled on the light; lights of any kind are taken so, each for
-///   itself.
+///   itself. The triangles of a mesh that shines are one light where they hang together.
 /// - The blockers are found by sending the frame's shadow rays once more (trace/tracer.h, shade()).
 class AafModule : public ScreenFilter {
 public:
@@ -40,6 +41,7 @@ private:
     TemporalSettings temporalSettings_;
     int windowRadius_ = 4, maxRadius_ = 32;
     float overlap_ = 3;  ///< k
+    Emitters emitters_;
     Image measured_, occlusion_, width_;
     Image half_, filtered_;
 };

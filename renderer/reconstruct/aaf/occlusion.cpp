@@ -24,9 +24,9 @@ struct LightSpread {
         sum += p;
         squares += p * p;
     }
-    /// Along one of its two dimensions.
+    /// Along one of its two dimensions, without bias; of at least two positions.
     float deviation() const {
-        const glm::dvec3 mean = sum / count, variance = squares / count - mean * mean;
+        const glm::dvec3 mean = sum / count, variance = (squares / count - mean * mean) * (count / (count - 1));
         return static_cast<float>(std::sqrt(std::max(0.5 * (variance.x + variance.y + variance.z), 0.0)));
     }
 };
@@ -70,14 +70,15 @@ float slopeOf(const Tracer& tracer, const ShadowSample& sample, const Vec3& posi
 
 }  // namespace
 
-bool measureOcclusion(const FrameContext& context, Image& out) {
+bool measureOcclusion(const FrameContext& context, Emitters& emitters, Image& out) {
     const Extent2 extent = context.signals.extent();
     if (out.extent() != extent) out.reset(extent, 3);
     out.fill(0);
     PathSettings settings = context.sampling.path;
     settings.maxDepth = 1;
-    std::map<int, LightSpread> spreads;
-    IdImage lights(extent, 1);  // 1 + entry
+    if (settings.strategy == DirectStrategy::Bsdf) settings.strategy = DirectStrategy::Light;
+    std::map<uint64_t, LightSpread> spreads;
+    std::vector<const LightSpread*> sampled(static_cast<size_t>(extent.area()), nullptr);  // of each pixel's light
     for (int top = 0; top < extent.height; top += kBand) {
         const int bottom = std::min(top + kBand, extent.height);
         const Pixels pixels = pixelsOf(context, top, bottom);
@@ -90,18 +91,19 @@ bool measureOcclusion(const FrameContext& context, Image& out) {
             const ShadowSample& sample = shadows[i];
             if (sample.light < 0) continue;
             const int x = static_cast<int>(i) % extent.width, y = top + static_cast<int>(i) / extent.width;
-            lights.at(0, x, y) = static_cast<uint32_t>(sample.light) + 1;
-            spreads[sample.light].add(sample.lightPosition);
-            if (!sample.blocked) continue;
+            const uint64_t emitter = emitters.emitterOf(context.tracer, sample.light);
+            LightSpread& spread = spreads[emitter];
+            spread.add(sample.lightPosition);
+            sampled[static_cast<size_t>(y) * static_cast<size_t>(extent.width) + static_cast<size_t>(x)] = &spread;
+            if (!sample.blocked || emitters.isOn(context.tracer, sample.blocker, emitter)) continue;
             out.at(0, x, y) = slopeOf(context.tracer, sample, context.tracer.position(pixels.points[i]));
             out.at(1, x, y) = 1;
         }
     }
-    std::map<uint32_t, float> deviations;
-    for (const auto& [light, spread] : spreads) deviations[static_cast<uint32_t>(light) + 1] = spread.deviation();
-    for (int64_t i = 0; i < extent.area(); ++i)
-        if (const auto found = deviations.find(lights.data()[i]); found != deviations.end())
-            out.plane(2).data[i] = found->second;
+    for (size_t i = 0; i < sampled.size(); ++i) {
+        if (sampled[i] && sampled[i]->count > 1) out.plane(2).data[i] = sampled[i]->deviation();
+        else out.plane(0).data[i] = out.plane(1).data[i] = 0;
+    }
     return true;
 }
 

@@ -18,29 +18,49 @@ Mat4 downwards(const Vec3& from) {
     return m;
 }
 
+Mat4 facingDown(const Vec3& at) { return translation(at) * scaling(Vec3(1, -1, -1)); }
+
+Material glowing() {
+    Material material;
+    material.emission = Vec3(5);
+    return material;
+}
+
 struct Measured {
     Image image;
     Signals signals;
 };
 
-Measured measure(const Material& floor, const Light& light, const Vec3& from) {
+/// A floor and a plate over it.
+TinyScene plateOverFloor(const Material& floor) {
     TinyScene tiny;
     tiny.add(floorMesh(), floor);
     tiny.add(floorMesh(1), lambert(0.5f), translation({0, kPlateHeight, 0}));
-    tiny.addLight(light, downwards(from));
+    return tiny;
+}
+
+Measured measure(TinyScene& tiny, DirectStrategy strategy = DirectStrategy::Mis) {
     const auto posed = tiny.pose();
     Tracer tracer;
     tracer.bind(posed);
-    const FrameSampling sampling =
+    FrameSampling sampling =
         frameOf(lookFrom({0, 1.5f, 4}, {0, 0, 0}, 40), kExtent, 1, plainPaths(2), SignalSet::all());
+    sampling.path.strategy = strategy;
     Measured measured;
     EXPECT_TRUE(tracer.sample(sampling, measured.signals));
     StageTimer timer;
     const TapSet none;
     const FrameContext context{
         0, measured.signals, *posed, sampling.camera, sampling.camera, {}, none, tracer, sampling, timer, {}};
-    EXPECT_TRUE(measureOcclusion(context, measured.image));
+    Emitters emitters;
+    EXPECT_TRUE(measureOcclusion(context, emitters, measured.image));
     return measured;
+}
+
+Measured measure(const Material& floor, const Light& light, const Vec3& from) {
+    TinyScene tiny = plateOverFloor(floor);
+    tiny.addLight(light, downwards(from));
+    return measure(tiny);
 }
 
 /// The floor under the plate's middle is in full shadow; the floor far from it is lit.
@@ -94,6 +114,64 @@ TEST(Occlusion, OfALampIsTheRatioOfDistances) {
             ASSERT_NEAR(measured.image.at(0, x, y), height / (height - kPlateHeight) - 1, 1e-3f);
         }
     EXPECT_GT(under, 10);
+}
+
+/// Mean of B over the floor's pixels whose light is known, and how many are blocked.
+struct Shadow {
+    double deviation = 0;
+    int known = 0, blocked = 0;
+};
+Shadow shadowOf(const Measured& measured) {
+    Shadow shadow;
+    for (int y = 0; y < kExtent.height; ++y)
+        for (int x = 0; x < kExtent.width; ++x) {
+            if (measured.signals.ids(Signal::ObjectId).at(0, x, y) != 1) continue;
+            shadow.blocked += measured.image.at(1, x, y) > 0;
+            if (measured.image.at(2, x, y) <= 0) continue;
+            shadow.deviation += static_cast<double>(measured.image.at(2, x, y));
+            ++shadow.known;
+        }
+    shadow.deviation /= std::max(shadow.known, 1);
+    return shadow;
+}
+
+// The tracer samples each triangle of a mesh as a light of its own; what casts the shadow is the whole.
+TEST(Occlusion, AMeshThatShinesIsOneLight) {
+    TinyScene square = plateOverFloor(lambert(0.5f));
+    square.add(floorMesh(0.8f), glowing(), facingDown({0, 3, 0}));
+    const Shadow shadow = shadowOf(measure(square));
+    EXPECT_NEAR(shadow.deviation, 0.8 / std::sqrt(12.0), 0.02) << "of a square, along a side";
+    EXPECT_GT(shadow.blocked, 40);
+}
+
+TEST(Occlusion, OneSampleTellsNoSize) {
+    // Two thousand bulbs: hardly one is sampled twice in a frame.
+    TinyScene bulbs = plateOverFloor(lambert(0.5f));
+    for (int i = 0; i < 2000; ++i)
+        bulbs.add(floorMesh(0.004f), glowing(),
+                  facingDown({0.05f * static_cast<float>(i % 50) - 1.25f, 3, 0.05f * static_cast<float>(i / 50) - 1}));
+    const Measured measured = measure(bulbs);
+    int ofNoSize = 0;
+    for (int64_t i = 0; i < kExtent.area(); ++i)
+        ofNoSize += measured.image.plane(1).data[i] > 0 && measured.image.plane(2).data[i] == 0;
+    EXPECT_EQ(ofNoSize, 0) << "a width of zero would be the least of every window";
+}
+
+TEST(Occlusion, LightsAreSampledAlsoWhereTheFrameSamplesNone) {
+    Light lamp;
+    lamp.type = LightType::Rectangle;
+    TinyScene tiny = plateOverFloor(lambert(0.5f));
+    tiny.addLight(lamp, downwards({0, 3, 0}));
+    EXPECT_GT(shadowOf(measure(tiny, DirectStrategy::Bsdf)).blocked, 40);
+}
+
+TEST(Emitters, TrianglesThatShareAPlaceAreOne) {
+    Mesh mesh;
+    // Two triangles with corners of their own at the same places, and one apart.
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0},
+                      {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}};
+    mesh.triangles = {{0, 1, 2}, {6, 7, 8}, {3, 4, 5}};
+    EXPECT_EQ(connectedParts(mesh), (std::vector<uint32_t>{0, 1, 0}));
 }
 
 TEST(Occlusion, TheSharpestShadowCountsWhoseverSlopeIsLess) {
