@@ -1,5 +1,7 @@
 #include "filter/taa.h"
 
+#include <cmath>
+
 #include "base/parallel.h"
 #include "filter/taa_kernels.h"
 
@@ -48,7 +50,9 @@ void TaaSettings::describe(ParameterVisitor& v) {
     });
 }
 
-bool antialiasTemporally(const TaaMotion& motion, const TaaSettings& settings, const Image& colour,
+float exposureFactor(const PosedScene& scene) { return std::exp2(scene.scene->render.exposureEv); }
+
+bool antialiasTemporally(const TaaMotion& motion, const TaaSettings& settings, float exposure, const Image& colour,
                          const Image* previous, Image& scratch, Image& next, Image& out, std::stop_token stop) {
     const Extent2 extent = colour.extent();
     if (previous && previous->extent() != extent) previous = nullptr;
@@ -61,9 +65,10 @@ bool antialiasTemporally(const TaaMotion& motion, const TaaSettings& settings, c
             in[c] = colour.plane(c).data + begin;
             to[c] = scratch.plane(c).data + begin;
         }
-        taaKernels().compressRow(in, to, static_cast<int>(end - begin));
+        taaKernels().compressRow(in, to, exposure, static_cast<int>(end - begin));
     });
-    const TaaRow shared = rowOf(motion, settings, scratch, previous);
+    TaaRow shared = rowOf(motion, settings, scratch, previous);
+    shared.exposure = exposure;
     parallelRanges(
         extent.height, kRows,
         [&](int64_t begin, int64_t end) {

@@ -12,12 +12,14 @@ namespace {
 
 constexpr int kBlock = 256;
 constexpr float kLargest = 3.402823466e38f;
+constexpr float kLeastRest = 0x1p-24f;  ///< 1 - luma of the brightest that is not 1
 
 inline float finiteOr0(float v) { return std::fabs(v) <= kLargest ? v : 0.0f; }
 
-void compressRow(const float* const rgb[3], float* const out[3], int count) {
+void compressRow(const float* const rgb[3], float* const out[3], float exposure, int count) {
     for (int x = 0; x < count; ++x) {
-        const float r = finiteOr0(rgb[0][x]), g = finiteOr0(rgb[1][x]), b = finiteOr0(rgb[2][x]);
+        const float r = finiteOr0(rgb[0][x] * exposure), g = finiteOr0(rgb[1][x] * exposure),
+                    b = finiteOr0(rgb[2][x] * exposure);
         const float y = 0.25f * r + 0.5f * g + 0.25f * b;
         const float scale = 1.0f / (1.0f + (y > 0.0f ? y : 0.0f));
         out[0][x] = y * scale;
@@ -212,6 +214,7 @@ void clipToNeighbourhood(const TaaRow& row, const Rows& rows, const Range& range
 void blend(const TaaRow& row, const Rows& rows, int first, int count, const Block& block, bool hasHistory) {
     float* next[3];
     const float* now[3];
+    const float linear = 1.0f / row.exposure;
     for (int c = 0; c < 3; ++c) {
         next[c] = row.next[c] + first;
         now[c] = row.compressed[c] + rows.here + first;
@@ -225,7 +228,7 @@ void blend(const TaaRow& row, const Rows& rows, int first, int count, const Bloc
     }
     for (int k = 0; k < count; ++k) {
         const float y = next[0][k], co = next[1][k], cg = next[2][k], rest = 1.0f - y;
-        const float scale = 1.0f / (rest > 1e-6f ? rest : 1e-6f), base = y - cg;
+        const float scale = linear / (rest > kLeastRest ? rest : kLeastRest), base = y - cg;
         const float r = (base + co) * scale, g = (y + cg) * scale, b = (base - co) * scale;
         row.out[0][first + k] = r > 0.0f ? r : 0.0f;
         row.out[1][first + k] = g > 0.0f ? g : 0.0f;

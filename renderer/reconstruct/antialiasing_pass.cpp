@@ -23,8 +23,8 @@ bool AntialiasingPass::run(const FrameContext& context, Image& image) {
         return true;
     }
     const auto measured = context.timer.measure("antialiasing");
-    return antialiasTemporally(context.signals, settings_, image, step.previous, scratch_, step.next, image,
-                               context.stop);
+    return antialiasTemporally(context.signals, settings_, exposureFactor(context.scene), image, step.previous,
+                               scratch_, step.next, image, context.stop);
 }
 
 }  // namespace lumi

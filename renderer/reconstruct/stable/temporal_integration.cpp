@@ -30,8 +30,8 @@ bool TemporalIntegration::run(const FrameContext& context, const Image& motion, 
             length_.data()[i] = x * x + y * y;
         }
     });
-    return antialiasTemporally(TaaMotion{motion, length_}, settings_, image, step.previous, scratch_, step.next, image,
-                               context.stop);
+    return antialiasTemporally(TaaMotion{motion, length_}, settings_, exposureFactor(context.scene), image,
+                               step.previous, scratch_, step.next, image, context.stop);
 }
 
 size_t TemporalIntegration::bytes() const {

@@ -13,14 +13,15 @@ namespace lumi {
 /// output is the next frame's colour history.
 ///
 /// Differs from the paper:
-/// - Eq. 3 works on 1/depth in place of clip-space depth; both are affine on a plane in screen space.
+/// - Eq. 3 works on 1/depth in place of clip-space depth; both are affine on a plane in screen space, seen in
+///   perspective. Under an orthographic camera depth itself would be: slanted planes weigh less there.
 /// - The second moment is kept about the mean (filter/temporal.h): the same variance with more digits.
 /// - The 3x3 fall-back's weights, which the paper does not state, are equal.
 /// - Fig. 3 feeds colour *and* moments of the first level back, sec. 4.3 colour alone: the moments stay unfiltered.
 /// - Values that are not finite are dropped and counted before anything reads them: with a history such a sample counts
 ///   nothing, without one its neighbours' mean stands in.
-/// - Antialiasing runs on linear light that Karis's weights compress, before the tone curve, which is the view's; the
-///   paper tone maps first (sec. 3).
+/// - Antialiasing runs on linear light at the scene's exposure that Karis's weights compress, before the tone curve,
+///   which is the view's; the paper tone maps first (sec. 3).
 /// - A bilinear tap of weight 0 is neither tested nor given the share of a refused one (kTapUnused): where nothing
 ///   moves there is one tap, and where that is refused the 3x3 fall-back, or without it the history, is lost.
 /// - Path-space regularization (path.regularize) follows diffuse scatterings; the paper's follows any, which is

@@ -53,8 +53,8 @@ RunResult TaaModule::run(const FrameContext& context, Image& out) {
     taps_.begin(context.wantedTaps);
     const int64_t dropped = countDropped(context.signals[Signal::Noisy], taps_.target("dropped"));
     auto [previous, next] = history_.begin(context.frame, context.changes.cut);
-    if (!antialiasTemporally(context.signals, settings_, context.signals[Signal::Noisy], previous, scratch_, next, out,
-                             context.stop))
+    if (!antialiasTemporally(context.signals, settings_, exposureFactor(context.scene), context.signals[Signal::Noisy],
+                             previous, scratch_, next, out, context.stop))
         return RunResult::Stopped;
     history_.commit();
     taps_.commit();

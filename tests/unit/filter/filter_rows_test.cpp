@@ -60,11 +60,12 @@ Results run(const Signals& first, const Signals& second) {
     Image scratch, early, next, unused;
     demodulate(first, results.frame);
     EXPECT_TRUE(filterTemporally(first, {}, {&results.frame.direct, &results.frame.indirect}, nullptr, before, {}));
-    EXPECT_TRUE(antialiasTemporally(first, {}, results.frame.direct, nullptr, scratch, early, unused, {}));
+    EXPECT_TRUE(antialiasTemporally(first, {}, 1, results.frame.direct, nullptr, scratch, early, unused, {}));
     demodulate(second, results.frame);
     EXPECT_TRUE(
         filterTemporally(second, {}, {&results.frame.direct, &results.frame.indirect}, &before, results.history, {}));
-    EXPECT_TRUE(antialiasTemporally(second, {}, results.frame.direct, &early, scratch, next, results.antialiased, {}));
+    EXPECT_TRUE(
+        antialiasTemporally(second, {}, 1, results.frame.direct, &early, scratch, next, results.antialiased, {}));
     return results;
 }
 

@@ -215,12 +215,28 @@ TEST(Taa, PassesWhatIsStillAndClipsWhatIsStale) {
     Image stale(kExtent, 3);
     stale.fill(0);
     for (int64_t i = 0; i < kExtent.area(); ++i) stale.data()[i] = 0.9f;  // compressed luma of radiance 9
-    ASSERT_TRUE(antialiasTemporally(signals, {}, colour, &stale, scratch, next, out, {}));
+    ASSERT_TRUE(antialiasTemporally(signals, {}, 1, colour, &stale, scratch, next, out, {}));
     EXPECT_NEAR(out.at(1, 9, 9), 0.7f, 1e-5);
     TaaSettings unclipped;
     unclipped.clip = false;
-    ASSERT_TRUE(antialiasTemporally(signals, unclipped, colour, &stale, scratch, next, out, {}));
+    ASSERT_TRUE(antialiasTemporally(signals, unclipped, 1, colour, &stale, scratch, next, out, {}));
     EXPECT_GT(out.at(1, 9, 9), 3);
+}
+
+// Lights a thousand times as strong at a thousandth of the exposure are the same picture.
+TEST(Taa, TheUnitOfRadianceIsNothingToIt) {
+    const Signals signals = wall({0.25f, 0});
+    Image colour(kExtent, 3), scaled(kExtent, 3);
+    for (size_t i = 0; i < colour.size(); ++i) {
+        colour.data()[i] = 0.1f + 3 * static_cast<float>(i % 7);
+        scaled.data()[i] = 1024 * colour.data()[i];
+    }
+    Image scratch, early, earlyScaled, next, nextScaled, out, outScaled;
+    ASSERT_TRUE(antialiasTemporally(signals, {}, 2, colour, nullptr, scratch, early, out, {}));
+    ASSERT_TRUE(antialiasTemporally(signals, {}, 0x1p-9f, scaled, nullptr, scratch, earlyScaled, outScaled, {}));
+    ASSERT_TRUE(antialiasTemporally(signals, {}, 2, colour, &early, scratch, next, out, {}));
+    ASSERT_TRUE(antialiasTemporally(signals, {}, 0x1p-9f, scaled, &earlyScaled, scratch, nextScaled, outScaled, {}));
+    for (size_t i = 0; i < out.size(); ++i) ASSERT_EQ(outScaled.data()[i], 1024 * out.data()[i]);
 }
 
 // Catmull-Rom reproduces a quadratic's slope: a ramp shifted by half a pixel stays a ramp.
@@ -230,7 +246,7 @@ TEST(Taa, HistoryIsReadBetweenPixels) {
         Image colour(kExtent, 3), history(kExtent, 3), scratch, next, out;
         for (int64_t i = 0; i < kExtent.area(); ++i) history.data()[i] = 0.01f * static_cast<float>(i % kExtent.width);
         const TaaSettings settings{.alpha = 0.01f, .clip = false, .history = filter};
-        ASSERT_TRUE(antialiasTemporally(signals, settings, colour, &history, scratch, next, out, {}));
+        ASSERT_TRUE(antialiasTemporally(signals, settings, 1, colour, &history, scratch, next, out, {}));
         EXPECT_NEAR(next.at(0, 10, 8), 0.99f * 0.105f, 1e-5);
     }
 }
