@@ -13,6 +13,25 @@ namespace {
 
 constexpr int64_t kGrain = 1 << 13;
 
+bool isFinite(const Image& image, int x, int y) {
+    return std::isfinite(image.at(0, x, y)) && std::isfinite(image.at(1, x, y)) && std::isfinite(image.at(2, x, y));
+}
+
+void fillEmission(const Image& input, DemodulatedFrame& frame) {
+    for (int y = 0; y < input.height(); ++y)
+        for (int x = 0; x < input.width(); ++x) {
+            if (frame.dropped.at(0, x, y) == 0 || isFinite(input, x, y)) continue;
+            float sum[3] = {0, 0, 0}, count = 0;
+            for (int j = std::max(y - 1, 0); j <= std::min(y + 1, input.height() - 1); ++j)
+                for (int i = std::max(x - 1, 0); i <= std::min(x + 1, input.width() - 1); ++i) {
+                    if (!isFinite(input, i, j)) continue;
+                    for (int c = 0; c < 3; ++c) sum[c] += input.at(c, i, j);
+                    ++count;
+                }
+            for (int c = 0; c < 3; ++c) frame.emission.at(c, x, y) = count > 0 ? sum[c] / count : 0;
+        }
+}
+
 }  // namespace
 
 void demodulate(const Signals& signals, DemodulatedFrame& frame) {
@@ -35,6 +54,7 @@ void demodulate(const Signals& signals, DemodulatedFrame& frame) {
         dropped += std::count(bad, bad + (end - begin), 1.0f);
     });
     frame.droppedPixels = dropped;
+    if (dropped > 0) fillEmission(signals[Signal::Emission], frame);
 }
 
 namespace {

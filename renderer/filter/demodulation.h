@@ -28,7 +28,8 @@ inline SignalSet demodulationSignals() {
     return {Signal::Emission, Signal::Albedo, Signal::SpecularAlbedo, Signal::Direct, Signal::Indirect};
 }
 
-/// Replaces NaN and infinity by 0 and counts them; what comes out is finite everywhere, and the two components are at
+/// Replaces NaN and infinity by 0, in the emission, which no filter mends, by the neighbours' mean (3x3, those without
+/// any), and counts them; what comes out is finite everywhere, and the two components are at
 /// most 1e15, whose square is a number, too.
 void demodulate(const Signals& signals, DemodulatedFrame& frame);
 

@@ -80,11 +80,12 @@ TEST_P(Degenerate, ADroppedSampleIsNoDarkOne) {
         const auto module = make(extent);
         for (FrameNumber frame = 0; frame < 5; ++frame) {
             Signals signals = constantSignals(extent, 1, 0.625f);
+            signals[Signal::Emission].fill(0.25f);
             if (frame == at)
-                for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::Indirect})
+                for (const Signal signal : {Signal::Noisy, Signal::Direct, Signal::Indirect, Signal::Emission})
                     signals[signal].at(1, 12, 7) = std::numeric_limits<float>::quiet_NaN();
             const Image image = harness.image(*module, frame, signals);
-            for (size_t i = 0; i < image.size(); ++i) ASSERT_NEAR(image.data()[i], 0.625f, 2e-6f) << "frame " << frame;
+            for (size_t i = 0; i < image.size(); ++i) ASSERT_NEAR(image.data()[i], 0.875f, 2e-6f) << "frame " << frame;
         }
     }
 }

@@ -78,7 +78,8 @@ std::vector<GradientSample> drawGradientSamples(const FrameContext& context, con
         sample.point = surfacePointAt(context, x, y);
         sample.luminance = {luminanceAt(direct, x, y), luminanceAt(indirect, x, y)};
     }
-    if (context.signals.samplesPerPixel() == 1) return samples;
+    // One sample a pixel through a pinhole is what shading it again would find.
+    if (context.signals.samplesPerPixel() == 1 && context.camera.aperture == 0) return samples;
     Batch batch;
     std::vector<size_t> which;
     for (size_t i = 0; i < samples.size(); ++i) {
