@@ -207,7 +207,7 @@ void ViewDriver::waits(const ScriptLine& line) {
         wait(line, [&] {
             const auto measured = state.metrics.latest();
             return measured && state.snapshot && measured->serial == state.snapshot->serial &&
-                   measured->problem.empty() &&
+                   measured->problem.empty() && state.referencePictures.current() &&
                    (state.errorMap.empty() || (!measured->panes.empty() && measured->panes[0].map));
         });
     } else if (line.command == "wait-spp") {

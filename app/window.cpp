@@ -90,7 +90,6 @@ public:
           session_(log_),
           interface_(gl_, session_, log_),
           pointers_(window_.get()),
-          writer_(log_),
           startCheck_(session_, log_, options.start) {
         connectInput(window_.get(), interface_.input());
         interface_.uiMap().setEnabled(!options.uiMap.empty());
@@ -131,7 +130,7 @@ private:
         AppState& state = interface_.state();
         if (state.windowShotWanted) {
             state.windowShotWanted = false;
-            writer_.write(readPixels(gl_, target), windowShotPath(state));
+            state.pictureWriter.write(readPixels(gl_, target), windowShotPath(state));
         }
         glfwSwapBuffers(window_.get());
         pointers_.show(interface_.pointer());
@@ -164,7 +163,6 @@ private:
     Session session_;
     Interface interface_;
     PointerShapes pointers_;
-    PictureWriter writer_;
     StartCheck startCheck_;
     std::string title_, uiMap_;
 };

@@ -1,10 +1,6 @@
 #include "app/workbench.h"
 
 #include <algorithm>
-#include <future>
-
-#include "base/files.h"
-#include "image/png.h"
 
 namespace lumi {
 
@@ -27,19 +23,6 @@ void StartCheck::check() {
     if (std::none_of(messages.begin(), messages.end(), isError)) return;
     Document document(session_.document().loadedScene());
     for (const TypedValue& value : values_) document.setText(value.id, value.text, value.option);
-}
-
-void PictureWriter::write(Image8 picture, const std::filesystem::path& path) {
-    std::erase_if(pending_, [](const std::future<void>& f) {
-        return f.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    });
-    pending_.push_back(std::async(std::launch::async, [this, path, image = std::move(picture)] {
-        try {
-            log_.info("Saved " + writeNewFile(path, encodePng(image)).string());
-        } catch (const std::exception& error) {
-            log_.error(error.what());
-        }
-    }));
 }
 
 }  // namespace lumi

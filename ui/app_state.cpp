@@ -13,6 +13,7 @@ void AppState::beginFrame() {
     if (latest && (!snapshot || latest->serial != snapshot->serial)) snapshot = latest;
     metrics.offer(snapshot);
     followReference();
+    convertReference();
     takeOrbitTarget();
     if (snapshot && pinned && (pinned->x >= snapshot->extent.width || pinned->y >= snapshot->extent.height))
         pinned.reset();
@@ -36,6 +37,25 @@ void AppState::followReference() {
     if (resumeAfterReference) setRendering(true);
 }
 
+/// The reference goes through each view's display; where a view shows another buffer, its map and range are not the
+/// image's.
+void AppState::convertReference() {
+    ReferencePictures::Source source;
+    std::array<DisplaySettings, kViewCount> displays;
+    if (showReference && document.present()) {
+        const ReferenceStatus status = metrics.reference();
+        source.image = status.image;
+        if (status.asShown) source.bakedExposureEv = sceneExposureEv();
+        for (int i = 0; i < kViewCount; ++i) {
+            const ViewSettings& shown = document.document().view(i);
+            DisplaySettings& display = displays[static_cast<size_t>(i)];
+            if (shown.buffer == "image") display = shown.display;
+            else display.exposureEv = shown.display.exposureEv, display.curve = shown.display.curve;
+        }
+    }
+    referencePictures.show(source, displays);
+}
+
 /// Makes the surface that was asked for what the camera orbits around: a point straight ahead, as far away.
 void AppState::takeOrbitTarget() {
     if (!orbitTarget.valid() || orbitTarget.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
@@ -53,7 +73,7 @@ void AppState::takeOrbitTarget() {
 }
 
 bool AppState::showsReference() const {
-    return showReference && snapshot && metrics.reference().picture && metrics.fits(*snapshot);
+    return showReference && snapshot && referencePictures.picture(0) && metrics.fits(*snapshot);
 }
 
 std::shared_ptr<const PaneMeasurement> AppState::shownMap(int index) const {
@@ -66,7 +86,7 @@ std::shared_ptr<const PaneMeasurement> AppState::shownMap(int index) const {
 }
 
 std::shared_ptr<const Image8> AppState::picture(int index) const {
-    if (showsReference()) return metrics.reference().picture;
+    if (showsReference()) return referencePictures.picture(index);
     if (const auto measured = shownMap(index)) return measured->map;
     const PaneSnapshot* shown = pane(index);
     return shown ? shown->pixels : nullptr;

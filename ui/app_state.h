@@ -8,8 +8,11 @@
 #include <vector>
 
 #include "session/live_metrics.h"
+#include "session/reference_pictures.h"
 #include "session/session.h"
+#include "ui/bookmark.h"
 #include "ui/document_mirror.h"
+#include "ui/picture_writer.h"
 #include "ui/timing.h"
 #include "ui/view_transform.h"
 
@@ -19,7 +22,7 @@ enum class PanelTab { View, Render, Scene, Measure, Profile };
 
 /// What the window shows beside the document: never part of an image, so neither undone nor saved with it.
 struct AppState {
-    AppState(Session& session_, MessageLog& log_) : session(session_), log(log_), metrics(log_) {}
+    AppState(Session& session_, MessageLog& log_) : session(session_), log(log_), metrics(log_), pictureWriter(log_) {}
 
     Session& session;
     MessageLog& log;
@@ -44,17 +47,19 @@ struct AppState {
     bool checkScenes = true;  ///< the signals of each scene are checked when it opens
 
     LiveMetrics metrics;
+    ReferencePictures referencePictures;
     int referenceTarget = 1;    ///< which of the numbers of samples that the panel offers
     std::string referenceFile;  ///< as typed
     bool allMetrics = false, showReference = false, resumeAfterReference = false;
     std::string errorMap;  ///< metric whose map stands in the pictures' place; empty: none
 
-    using Bookmarks = std::array<std::optional<Camera>, 9>;
+    using Bookmarks = std::array<std::optional<CameraBookmark>, 9>;
     std::map<std::string, Bookmarks> bookmarksByScene;  ///< by the scene's path
     std::vector<std::filesystem::path> recentScenes;
     std::filesystem::path captures;  ///< folder for screenshots; empty: the current one
 
     UiTiming timing;
+    PictureWriter pictureWriter;
     std::string clipboard;  ///< text for the system's clipboard, taken by the window
     bool windowShotWanted = false, quit = false;
 
@@ -78,6 +83,8 @@ struct AppState {
     /// The error map that a pane shows; null if it shows something else.
     std::shared_ptr<const PaneMeasurement> shownMap(int pane) const;
     bool showsReference() const;
+    /// Does time go on: is it played, and not held by paused rendering?
+    bool timePlays() const { return session.playing() && session.rendering(); }
     float sceneExposureEv() const {
         return document.present() ? document.document().loadedScene()->render.exposureEv : 0;
     }
@@ -95,6 +102,7 @@ struct AppState {
 private:
     void takeOrbitTarget();
     void followReference();
+    void convertReference();
     std::weak_ptr<const Scene> referenceOf_;  ///< as loaded: what a reference is made of
     bool makesReference_ = false;
     std::map<std::string, std::vector<BufferEntry>> buffers_;

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "reconstruct/catalog.h"
+#include "ui/bookmark.h"
 #include "ui/panels/panels.h"
 
 namespace lumi {
@@ -70,25 +71,24 @@ void resetAll(AppState& state) {
 }
 
 void recallBookmark(AppState& state, int index) {
-    const auto& camera = state.bookmarks()[static_cast<size_t>(index)];
-    if (!camera) {
+    const auto& bookmark = state.bookmarks()[static_cast<size_t>(index)];
+    if (!bookmark) {
         state.log.info(fmt::format("Bookmark {} is empty; Ctrl+{} stores the camera there.", index + 1, index + 1));
         return;
     }
-    state.setCamera(*camera);
+    state.session.setAll(valuesOf(*bookmark, state.document));
     state.session.endEdit();
 }
 
 void closeTopmost(AppState& state) {
     if (state.helpOpen) state.helpOpen = false;
     else if (state.browserOpen) state.browserOpen = false;
+    else if (state.session.loadStatus().loading) state.session.cancelLoading();
     else if (state.uiHidden) state.uiHidden = false;
     else if (state.pinned) state.pinned.reset();
     else if (state.messagesOpen || state.signalsOpen) state.messagesOpen = state.signalsOpen = false;
     else state.quit = true;
 }
-
-std::string vectorText(const Vec3& v) { return fmt::format("{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z); }
 
 void runPictureCommand(AppState& state, UiCommand command, int index) {
     switch (command) {
@@ -114,22 +114,40 @@ void makeReference(AppState& state) {
     state.tab = PanelTab::Measure;
 }
 
+/// The map stands where the reference does, so it takes its place.
+void toggleErrorMap(AppState& state, bool present) {
+    const bool hidden = state.showReference && !state.errorMap.empty();
+    state.showReference = false;
+    if (!hidden) state.errorMap = state.errorMap.empty() && present ? "flip" : "";
+}
+
 void runMeasureCommand(AppState& state, UiCommand command) {
     const bool present = state.metrics.reference().present;
     switch (command) {
         case UiCommand::MakeReference: makeReference(state); break;
         case UiCommand::ShowReference: state.showReference = present && !state.showReference; break;
-        case UiCommand::ToggleErrorMap: state.errorMap = state.errorMap.empty() && present ? "flip" : ""; break;
+        case UiCommand::ToggleErrorMap: toggleErrorMap(state, present); break;
         default: return;
     }
+    const bool wanted = state.showReference || !state.errorMap.empty();
     if (!present && command != UiCommand::MakeReference)
         state.log.info("There is no reference yet; " + shortcutText(UiCommand::MakeReference) + " makes one.");
+    else if (present && wanted && state.snapshot && !state.metrics.fits(*state.snapshot))
+        state.log.warning("The reference is of something else than what is shown now; " +
+                          shortcutText(UiCommand::MakeReference) + " makes one of this.");
+}
+
+/// What was paused by hand or after a step goes on when its time is to play.
+void playTime(AppState& state) {
+    const bool plays = state.timePlays();
+    state.session.setPlaying(!plays);
+    if (!plays) state.setRendering(true);
 }
 
 void runTimeCommand(AppState& state, UiCommand command) {
     Session& session = state.session;
     switch (command) {
-        case UiCommand::PlayTime: session.setPlaying(!session.playing()); break;
+        case UiCommand::PlayTime: playTime(state); break;
         case UiCommand::PauseRendering: state.setRendering(!session.rendering()); break;
         case UiCommand::Step:
             state.setRendering(false);
@@ -150,20 +168,31 @@ void runTimeCommand(AppState& state, UiCommand command) {
     }
 }
 
+/// The view as it stands in the window; of a reference or an error map there is no state to keep with it.
+void savePicture(AppState& state) {
+    const int pane = state.activePane;
+    const bool reference = state.showsReference();
+    if (!reference && !state.shownMap(pane)) return state.session.captureView(pane, captureStem(state), "png");
+    std::filesystem::path path = captureStem(state);
+    path += fmt::format(".{}.{}.{:04}.png", state.module(pane), reference ? "reference" : "error-" + state.errorMap,
+                        state.snapshot->frame);
+    state.pictureWriter.write(*state.picture(pane), path);
+}
+
 void runWindowCommand(AppState& state, UiCommand command, int index) {
     switch (command) {
         case UiCommand::ToggleOrbit: state.leftDragOrbits = !state.leftDragOrbits; break;
         case UiCommand::StoreBookmark:
-            state.bookmarks()[static_cast<size_t>(index)] = state.document.camera();
+            state.bookmarks()[static_cast<size_t>(index)] = bookmarkOf(state.document);
             state.log.info(fmt::format("Camera stored as bookmark {}.", index + 1));
             break;
         case UiCommand::RecallBookmark: recallBookmark(state, index); break;
         case UiCommand::CopyCamera:
-            state.clipboard = cameraAsCommandLine(state.document.camera());
+            state.clipboard = cameraAsCommandLine(state.document);
             state.log.info("Camera copied: " + state.clipboard);
             break;
         case UiCommand::OpenScene: state.browserOpen = !state.browserOpen; break;
-        case UiCommand::SavePicture: state.session.captureView(state.activePane, captureStem(state), "png"); break;
+        case UiCommand::SavePicture: savePicture(state); break;
         case UiCommand::SaveBuffers: state.session.captureView(state.activePane, captureStem(state), "exr"); break;
         case UiCommand::SaveWindow: state.windowShotWanted = true; break;
         case UiCommand::ResetAll: resetAll(state); break;
@@ -204,14 +233,6 @@ void runCommand(AppState& state, UiCommand command, int index) {
     } catch (const std::exception& error) {
         state.log.error(error.what());
     }
-}
-
-std::string cameraAsCommandLine(const Camera& camera) {
-    std::string text =
-        "--set camera.eye=" + vectorText(camera.eye) + " --set camera.look-at=" + vectorText(camera.target);
-    if (camera.projection == Projection::Perspective)
-        text += fmt::format(" --set camera.fov-y-deg={:.6g}", camera.fovYDeg);
-    return text;
 }
 
 std::filesystem::path windowShotPath(const AppState& state) {

@@ -107,6 +107,7 @@ void Interface::build(Extent2 target, float elapsedSeconds) {
     revisionSeen_ = state_.session.revision();
     checkSeen_ = state_.session.signalCheck();
     measuredSeen_ = state_.metrics.latest();
+    referenceSeen_ = state_.referencePictures.serial();
     state_.metrics.choose(wantedMetrics(state_), state_.errorMap);
     const FrameInput input = input_.applyFrame();
     io.DisplaySize = ImVec2(static_cast<float>(target.width), static_cast<float>(target.height));
@@ -145,6 +146,7 @@ bool Interface::wantsFrame() const {
     const auto latest = state_.session.snapshot();
     if (latest && (!state_.snapshot || latest->serial != state_.snapshot->serial)) return true;
     if (state_.session.signalCheck() != checkSeen_ || state_.metrics.latest() != measuredSeen_) return true;
+    if (state_.referencePictures.serial() != referenceSeen_) return true;
     return state_.log.serial() != messagesSeen_ || state_.session.revision() != revisionSeen_;
 }
 

@@ -63,6 +63,7 @@ private:
     uint64_t revisionSeen_ = 0;
     std::shared_ptr<const SignalCheck> checkSeen_;
     std::shared_ptr<const LiveMeasurement> measuredSeen_;
+    uint64_t referenceSeen_ = 0;
 };
 
 }  // namespace lumi

@@ -13,16 +13,23 @@ namespace {
 
 using nlohmann::json;
 
-json vectorJson(const Vec3& v) { return {v.x, v.y, v.z}; }
-Vec3 vectorFrom(const json& j) { return {j.at(0).get<float>(), j.at(1).get<float>(), j.at(2).get<float>()}; }
-
 json bookmarksJson(const AppState::Bookmarks& bookmarks) {
     json list = json::object();
     for (size_t i = 0; i < bookmarks.size(); ++i)
-        if (bookmarks[i])
-            list[std::to_string(i + 1)] = {{"eye", vectorJson(bookmarks[i]->eye)},
-                                           {"look-at", vectorJson(bookmarks[i]->target)}};
+        if (bookmarks[i]) list[std::to_string(i + 1)] = *bookmarks[i];
     return list;
+}
+
+/// Values by id, as text; a file of the first version has a pose alone, as numbers.
+CameraBookmark bookmarkFrom(const json& stored) {
+    CameraBookmark bookmark;
+    for (const auto& [id, value] : stored.items()) {
+        if (value.is_string()) bookmark[id] = value.get<std::string>();
+        else
+            bookmark["camera." + id] =
+                formatParameter(Vec3(value.at(0).get<float>(), value.at(1).get<float>(), value.at(2).get<float>()));
+    }
+    return bookmark;
 }
 
 void readInto(AppState& state, const json& root) {
@@ -33,10 +40,7 @@ void readInto(AppState& state, const json& root) {
     for (const auto& [scene, list] : byScene.items())
         for (const auto& [number, camera] : list.items()) {
             const auto index = static_cast<size_t>(std::stoi(number) - 1);
-            Camera stored;
-            stored.eye = vectorFrom(camera.at("eye"));
-            stored.target = vectorFrom(camera.at("look-at"));
-            state.bookmarksByScene[scene].at(index) = stored;
+            state.bookmarksByScene[scene].at(index) = bookmarkFrom(camera);
         }
 }
 
@@ -70,7 +74,7 @@ void savePreferences(const AppState& state, const std::filesystem::path& path) {
         writeFileAtomically(
             path,
             jsonText(
-                json{{"version", 1}, {"recent", recent}, {"bookmarks", bookmarks}, {"check-scenes", state.checkScenes}},
+                json{{"version", 2}, {"recent", recent}, {"bookmarks", bookmarks}, {"check-scenes", state.checkScenes}},
                 1));
     } catch (const std::exception& error) {
         state.log.warning(error.what());

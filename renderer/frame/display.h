@@ -24,6 +24,7 @@ struct DisplaySettings {
     int channel = -1;  ///< -1 all, 0.. one channel; in parameters "all", "1", ...
 
     void describe(ParameterVisitor&);
+    bool operator==(const DisplaySettings&) const = default;
 };
 
 /// What convert() did, for the colour bar and the inspector.

@@ -23,15 +23,6 @@ void lowerPriority() {
     setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 10);
 }
 
-std::shared_ptr<const Image8> shown(const Image& image, float exposureEv, ToneCurve curve = DisplaySettings().curve) {
-    auto pixels = std::make_shared<Image8>();
-    DisplaySettings settings;
-    settings.exposureEv = exposureEv;
-    settings.curve = curve;
-    convert(image, "RGB", "none", settings, *pixels);
-    return pixels;
-}
-
 /// Values on which depends to what, and how, an image of the module converges.
 std::string settingsOf(const Document& document, const std::string& module) {
     std::string text;
@@ -105,21 +96,18 @@ void LiveMetrics::inBackground(std::function<Made(std::stop_token)> make) {
     });
 }
 
-void LiveMetrics::loadReference(const std::filesystem::path& file, float exposureEv) {
-    inBackground([file, exposureEv](std::stop_token) {
+void LiveMetrics::loadReference(const std::filesystem::path& file) {
+    inBackground([file](std::stop_token) {
         Made made{std::make_shared<Held>(), {}};
         made.held->image = loadImage(file);
         made.held->asShown = !isLinearFile(file);
         made.status.name = file.filename().string();
-        made.status.picture =
-            made.held->asShown ? shown(made.held->image, 0, ToneCurve::Clamp) : shown(made.held->image, exposureEv);
         return made;
     });
 }
 
 void LiveMetrics::makeReference(const Document& document, uint64_t samples) {
-    const float exposureEv = document.loadedScene()->render.exposureEv;
-    inBackground([this, spec = referenceSpec(document), samples, exposureEv](std::stop_token stop) {
+    inBackground([this, spec = referenceSpec(document), samples](std::stop_token stop) {
         ReferenceOptions options;
         options.cache = defaultReferenceCache();
         options.log = &log_;
@@ -133,7 +121,6 @@ void LiveMetrics::makeReference(const Document& document, uint64_t samples) {
         made.status.name = fmt::format("{} spp{}", reference.samples, reference.cached ? ", from the cache" : "");
         made.status.samples = reference.samples;
         made.status.error = reference.error > 0 ? reference.error : 0;
-        made.status.picture = shown(reference.image, exposureEv);
         made.held->image = std::move(reference.image);
         made.held->spec = spec;
         return made;
@@ -145,6 +132,8 @@ void LiveMetrics::adopt(Made made) {
     status_ = std::move(made.status);
     status_.present = true;
     status_.extent = made.held->image.extent();
+    status_.image = {made.held, &made.held->image};
+    status_.asShown = made.held->asShown;
     reference_ = std::move(made.held);
     latest_ = nullptr;
     curves_ = nullptr;
@@ -238,6 +227,7 @@ void LiveMetrics::run(std::stop_token quit) {
         }
         measured->serial = snapshot->serial;
         measured->samples = snapshot->accumulatedSamples;
+        measured->frame = snapshot->frame;
         lock.lock();
         if (reference != reference_) continue;
         note(*measured);

@@ -31,7 +31,8 @@ struct PaneMeasurement {
 /// What was measured of one snapshot.
 struct LiveMeasurement {
     uint64_t serial = 0;   ///< Snapshot::serial
-    uint64_t samples = 0;  ///< a pixel that the progressive mean had then
+    uint64_t samples = 0;  ///< a pixel that the progressive mean had then; 0: nothing accumulates
+    FrameNumber frame = 0;
     std::vector<PaneMeasurement> panes;
     std::string problem;  ///< why nothing was measured; empty: it was
     double ms = 0;        ///< what it took
@@ -52,9 +53,10 @@ struct ReferenceStatus {
     bool present = false;
     std::string name;  ///< a file, or "1024 spp"
     Extent2 extent;
-    uint64_t samples = 0;                   ///< a pixel; 0: unknown
-    double error = 0;                       ///< its own, relative; 0: unknown
-    std::shared_ptr<const Image8> picture;  ///< as shown: ACES at the scene's exposure
+    uint64_t samples = 0;                ///< a pixel; 0: unknown
+    double error = 0;                    ///< its own, relative; 0: unknown
+    std::shared_ptr<const Image> image;  ///< linear RGB
+    bool asShown = false;                ///< a picture file: the scene's exposure and a tone curve are in it
 };
 
 /// Measures each pane's result against a reference while frames come, on a thread of its own: always the newest
@@ -65,7 +67,7 @@ public:
     ~LiveMetrics();
 
     /// Reads an image file as the reference. Failures are Errors in the log, and the present one stays.
-    void loadReference(const std::filesystem::path& file, float exposureEv);
+    void loadReference(const std::filesystem::path& file);
     /// What the document shows, converged: from the cache, or traced and kept there. Drops one that is being made.
     void makeReference(const Document& document, uint64_t samples);
     void cancelReference();

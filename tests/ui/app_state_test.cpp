@@ -1,9 +1,12 @@
 #include "ui/app_state.h"
 
 #include <cstdlib>
+#include <fstream>
 
 #include "support/session_test.h"
 #include "support/temporary_folder.h"
+#include "ui/commands.h"
+#include "ui/preferences.h"
 
 namespace lumi::test {
 namespace {
@@ -70,6 +73,58 @@ TEST_F(AppStateTest, TheSurfaceAskedForIsWhatTheCameraOrbitsAround) {
     EXPECT_NE(after.target, before.target);
     EXPECT_NEAR(glm::dot(glm::normalize(after.target - after.eye), glm::normalize(before.target - before.eye)), 1,
                 1e-5f);
+}
+
+TEST_F(AppStateTest, ABookmarkIsTheWholeCamera) {
+    open();
+    state.beginFrame();
+    session.setAll({{"camera.aperture", 0.0123456789f}, {"camera.fov-y-deg", 20.0f}, {"camera.up", Vec3(0.3f, 1, 0)}});
+    state.beginFrame();
+    EXPECT_EQ(cameraAsCommandLine(state.document).find("camera.select"), std::string::npos);
+    for (const char* told : {"--set camera.eye=", " --set camera.look-at=", " --set camera.fov-y-deg=20",
+                             " --set camera.aperture=0.012345679", " --set camera.up=0.3,1,0"})
+        EXPECT_NE(cameraAsCommandLine(state.document).find(told), std::string::npos) << told;
+    runCommand(state, UiCommand::StoreBookmark, 3);
+    const Camera stored = session.document().camera();
+    session.setAll(
+        {{"camera.projection", std::string("orthographic")}, {"camera.eye", Vec3(9)}, {"camera.aperture", 0.0f}});
+    state.beginFrame();
+    savePreferences(state, folder / "window.json");
+    AppState later(session, log);
+    later.beginFrame();
+    loadPreferences(later, folder / "window.json");
+    runCommand(later, UiCommand::RecallBookmark, 3);
+    const Camera back = session.document().camera();
+    EXPECT_EQ(back.eye, stored.eye);
+    EXPECT_EQ(back.projection, Projection::Perspective);
+    EXPECT_EQ(back.fovYDeg, 20.0f);
+    EXPECT_EQ(back.aperture, stored.aperture);
+    EXPECT_EQ(back.up, stored.up);
+}
+
+TEST_F(AppStateTest, PosesOfTheFirstPreferencesAreRead) {
+    open();
+    state.beginFrame();
+    std::ofstream(folder / "window.json") << R"({"version": 1, "bookmarks": {")" << kCornell.string()
+                                          << R"(": {"2": {"eye": [1, 2, 3], "look-at": [0, 0, 1]}}}})";
+    loadPreferences(state, folder / "window.json");
+    runCommand(state, UiCommand::RecallBookmark, 1);
+    EXPECT_EQ(session.document().camera().eye, Vec3(1, 2, 3));
+    EXPECT_TRUE(log.messages().empty());
+}
+
+TEST_F(AppStateTest, WhatWasSteppedGoesOnWhenItIsPlayed) {
+    open();
+    state.beginFrame();
+    runCommand(state, UiCommand::PlayTime);
+    EXPECT_TRUE(state.timePlays());
+    runCommand(state, UiCommand::Step);
+    EXPECT_FALSE(state.timePlays()) << "the step holds it";
+    runCommand(state, UiCommand::PlayTime);
+    EXPECT_TRUE(state.timePlays());
+    runCommand(state, UiCommand::PlayTime);
+    EXPECT_FALSE(state.timePlays());
+    EXPECT_TRUE(session.rendering()) << "time alone stands";
 }
 
 }  // namespace

@@ -280,7 +280,17 @@ wait-metrics
 shot map
 key m
 key g
+wait-metrics
 shot reference
+key F12
+wait-message Saved
+key ]
+key ]
+key ]
+key ]
+pause 2
+wait-metrics
+shot brighter
 click tab:View
 key ctrl+m
 click close-messages
@@ -292,6 +302,9 @@ dump-ui closed
     picture, error, reference = (Picture(out / f"{n}.png") for n in ("picture", "map", "reference"))
     assert difference(picture, error, PICTURE) > 10, "the error map is another picture"
     assert 1 < difference(picture, reference, PICTURE) < 60, "the reference is the same thing with less noise"
+    brighter = Picture(out / "brighter.png")
+    assert brighter.mean(PICTURE) > reference.mean(PICTURE) + 10, "the reference is shown at the view's exposure"
+    assert list(out.glob("cornell.*.reference.*.png")), "F12 saves what the view shows"
     assert "close-messages" not in names("closed.json"), "the drawer's buttons have the mouse"
     assert report["errors"] == [], report["errors"]
 
