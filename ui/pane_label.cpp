@@ -79,7 +79,9 @@ void drawPaneLabel(AppState& state, int pane, const ImRect& rect, bool alignRigh
     if (lettered) fixed += px(28);
     {
         const WithFont small(ui().fonts.small);
-        words = elided(words, std::max(rect.GetWidth() * (alignRight ? 0.5f : 1.0f) - fixed - px(40), px(24)));
+        const float share = state.layout() == Layout::Wipe ? 0.5f : 1.0f;  // the two labels lie in one rectangle
+        const float room = rect.GetWidth() * share - fixed - px(24);
+        words = room < px(40) ? std::string() : elided(words, room);
         fixed += ImGui::CalcTextSize(words.c_str()).x;
     }
     const ImVec2 corner(alignRight ? rect.Max.x - fixed - px(12) : rect.Min.x + px(12), rect.Min.y + px(12));

@@ -12,23 +12,34 @@ namespace lumi {
 namespace {
 
 constexpr double kWidestSlider = 1e5;  ///< wider linear ranges are dragged, not slid
+/// Below it a logarithmic slider that begins at 0 shows 0: what ImGui takes from the decimals of its format.
+constexpr double kLeastOfLog = 1e-4;
+constexpr const char* kLogFormat = "%.4g";
 
 std::string rangeText(const ParameterInfo& info) {
     if (info.type != ParameterType::Number && info.type != ParameterType::Integer) return {};
     return fmt::format("{:.6g} to {:.6g}{}{}", info.min, info.max, info.unit.empty() ? "" : " ", info.unit);
 }
 
-std::string numberFormat(const ParameterInfo& info) {
-    const double span = info.max - info.min;
-    std::string format = info.scale == Scale::Log ? "%.4g" : span <= 2 ? "%.3f" : span <= 50 ? "%.2f" : "%.4g";
+/// Fixed decimals for ranges of everyday size, unless they would tell another number than `value`.
+std::string numberFormat(const ParameterInfo& info, double value) {
+    const double span = info.max - info.min, half = span <= 2 ? 0.5e-3 : 0.5e-2;
+    std::string format = info.scale == Scale::Log || span > 50 ? kLogFormat : span <= 2 ? "%.3f" : "%.2f";
+    if (value != 0 && std::abs(value) < 100 * half) format = kLogFormat;
     if (!info.unit.empty()) format += " " + info.unit;
     return format;
 }
 
+/// Where a value lies on a slider, in [0,1].
+double positionOf(const ParameterInfo& info, double value) {
+    if (info.scale == Scale::Linear) return (value - info.min) / (info.max - info.min);
+    const double least = std::max(info.min, kLeastOfLog);
+    return std::log(std::max(value, least) / least) / std::log(info.max / least);
+}
+
 /// The filled part of a slider, under ImGui's own, whose frame and grab are made invisible.
 void drawFill(const ParameterInfo& info, double value, float width) {
-    double t = (value - info.min) / (info.max - info.min);
-    if (info.scale == Scale::Log && info.min > 0) t = std::log(value / info.min) / std::log(info.max / info.min);
+    const double t = positionOf(info, value);
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float height = ImGui::GetFrameHeight();
     ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -48,11 +59,12 @@ void drawFill(const ParameterInfo& info, double value, float width) {
 
 bool numberWidget(const ParameterInfo& info, float& value, float width) {
     const auto low = static_cast<float>(info.min), high = static_cast<float>(info.max);
-    const std::string format = numberFormat(info);
+    const std::string format = numberFormat(info, static_cast<double>(value));
     ImGui::SetNextItemWidth(width);
     if (info.scale == Scale::Linear && info.max - info.min > kWidestSlider) {
         const float speed = std::max(std::abs(value) * 0.01f, 0.001f);
-        return ImGui::DragFloat("##value", &value, speed, low, high, format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+        return ImGui::DragFloat("##value", &value, speed, low, high, format.c_str(),
+                                ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
     }
     drawFill(info, static_cast<double>(value), width);
     ImGui::PushStyleColor(ImGuiCol_FrameBg, 0);
@@ -108,19 +120,55 @@ std::optional<std::string> choiceWidget(const ParameterInfo& info, const std::st
     return chosen;
 }
 
+/// As many of the value's digits as fit into `width`, at least two.
+std::string fittingFormat(float value, float width) {
+    for (int digits = 6; digits > 2; --digits) {
+        const std::string text = fmt::format("{:.{}g}", value, digits);
+        if (ImGui::CalcTextSize(text.c_str()).x <= width) return fmt::format("%.{}g", digits);
+    }
+    return "%.2g";
+}
+
+/// Three numbers that are dragged, each with as many digits as its field holds; the pointer over one shows them all.
+bool tripleWidget(const ParameterInfo& info, Vec3& value, float width, float low, float high) {
+    const float gap = px(4), field = std::floor((width - 2 * gap) / 3);
+    const float speed = std::max(glm::length(value) * 0.005f, 0.002f);
+    bool changed = false;
+    ImGui::BeginGroup();
+    for (int i = 0; i < 3; ++i) {
+        if (i > 0) ImGui::SameLine(0, gap);
+        ImGui::PushID(i);
+        ImGui::SetNextItemWidth(field);
+        const std::string format = fittingFormat(value[i], field - px(6));
+        ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(3), ImGui::GetStyle().FramePadding.y));
+        changed |= ImGui::DragFloat("##value", &value[i], speed, low, high, format.c_str(),
+                                    ImGuiSliderFlags_NoRoundToFormat | (low < high ? ImGuiSliderFlags_AlwaysClamp : 0));
+        ImGui::PopStyleVar();
+        if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
+            tooltip(info.label, fmt::format("{:.9g}, {:.9g}, {:.9g}", value.x, value.y, value.z));
+        ImGui::PopID();
+    }
+    ImGui::EndGroup();
+    return changed;
+}
+
+/// Numbers, and a swatch that opens a picker.
 bool colourWidget(const ParameterInfo& info, Vec3& value, float width) {
-    ImGui::SetNextItemWidth(width);
-    ImGuiColorEditFlags flags = ImGuiColorEditFlags_Float | ImGuiColorEditFlags_PickerHueWheel;
+    const float swatch = ImGui::GetFrameHeight(), gap = px(4);
+    ImGuiColorEditFlags flags =
+        ImGuiColorEditFlags_Float | ImGuiColorEditFlags_PickerHueWheel | ImGuiColorEditFlags_NoInputs;
     if (info.max > 1) flags |= ImGuiColorEditFlags_HDR;
-    const bool changed = ImGui::ColorEdit3("##value", &value.x, flags);
+    ImGui::BeginGroup();
+    bool changed = tripleWidget(info, value, width - swatch - gap, 0, static_cast<float>(info.max));
+    ImGui::SameLine(0, gap);
+    changed |= ImGui::ColorEdit3("##picker", &value.x, flags);
+    ImGui::EndGroup();
     value = glm::clamp(value, Vec3(0), Vec3(static_cast<float>(info.max)));
     return changed;
 }
 
 bool vectorWidget(const ParameterInfo& info, Vec3& value, float width) {
-    ImGui::SetNextItemWidth(width);
-    const float speed = std::max(glm::length(value) * 0.005f, 0.002f);
-    return ImGui::DragFloat3("##value", &value.x, speed, 0, 0, "%.3g");
+    return tripleWidget(info, value, width, 0, 0);
 }
 
 void valueWidget(const ParameterInfo& info, float width, ParameterEdit& edit) {

@@ -43,7 +43,7 @@ constexpr std::array kShortcuts{
 
     Shortcut{UiCommand::PlayTime, plain(Key::Space), 1, false, kTime, "Play or pause time"},
     Shortcut{UiCommand::PauseRendering, control(Key::Space), 1, false, kTime, "Pause or resume rendering"},
-    Shortcut{UiCommand::Step, plain(Key::Period), 1, false, kTime, "One frame forward"},
+    Shortcut{UiCommand::Step, plain(Key::Period), 1, false, kTime, "One frame forward (of time too, if it was played)"},
     Shortcut{UiCommand::StepBack, plain(Key::Comma), 1, false, kTime, "One frame back"},
     Shortcut{UiCommand::Restart, plain(Key::R), 1, false, kTime, "Restart at frame 0"},
 
@@ -62,7 +62,7 @@ constexpr std::array kShortcuts{
     Shortcut{UiCommand::ToggleSignals, plain(Key::K), 1, false, kWindow, "Do the signals keep their contract?"},
     Shortcut{UiCommand::Help, plain(Key::F1), 1, false, kWindow, "This page"},
     Shortcut{UiCommand::Help, shift(Key::Slash), 1, false, kWindow, "This page"},
-    Shortcut{UiCommand::Close, plain(Key::Escape), 1, false, kWindow, "Close what is open, else quit"},
+    Shortcut{UiCommand::Close, plain(Key::Escape), 1, false, kWindow, "Close what is open, stop a load, else quit"},
     Shortcut{UiCommand::Quit, control(Key::Q), 1, false, kWindow, "Quit"},
 };
 

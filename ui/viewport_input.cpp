@@ -27,7 +27,7 @@ float baseSpeed(const AppState& state) {
 bool fly(AppState& state, Camera& camera) {
     const ImGuiIO& io = ImGui::GetIO();
     const bool looking = ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Right);
-    if (io.WantTextInput || (io.KeyCtrl && !looking) || io.KeyAlt) return false;
+    if (state.helpOpen || state.browserOpen || io.WantTextInput || (io.KeyCtrl && !looking) || io.KeyAlt) return false;
     const auto axis = [](UiCommand plus, UiCommand minus) {
         return (held(plus) ? 1.0f : 0.0f) - (held(minus) ? 1.0f : 0.0f);
     };

@@ -19,7 +19,7 @@ enum class Redo {
     Build     ///< the scene is posed or built again
 };
 
-enum class Scale { Linear, Log };
+enum class Scale { Linear, Log };  ///< of a slider; a logarithmic one may begin at 0, for an "off" or "none"
 
 /// How a parameter presents itself, written once where it is declared. Text follows the paper: name its equation.
 struct NumberSpec {

@@ -38,6 +38,7 @@ void Camera::describe(ParameterVisitor& v) {
              {.label = "Aperture",
               .min = 0,
               .max = 10,
+              .scale = Scale::Log,
               .unit = "m",
               .help = "Radius of the lens; 0 is a pinhole.",
               .redo = Redo::Samples});
@@ -72,6 +73,7 @@ void Camera::describe(ParameterVisitor& v) {
              {.label = "Shutter",
               .min = 0,
               .max = 60,
+              .scale = Scale::Log,
               .unit = "frames",
               .help = "How long the shutter is open from the frame's time on, in frames: 0.5 is film's half turn, 0 an "
                       "instant without motion blur.",

@@ -5,9 +5,13 @@
 namespace lumi {
 
 void Light::describe(ParameterVisitor& v) {
-    v.number(
-        "power", power,
-        {.label = "Power", .min = 0, .max = 1e4, .help = "Factor on all that the light emits.", .redo = Redo::Samples});
+    v.number("power", power,
+             {.label = "Power",
+              .min = 0,
+              .max = 1e4,
+              .scale = Scale::Log,
+              .help = "Factor on all that the light emits.",
+              .redo = Redo::Samples});
     const bool isFlat = type == LightType::Rectangle, isRound = type == LightType::Sphere || type == LightType::Disk;
     const bool isPoint = type == LightType::Point, isSpot = type == LightType::Spot;
     v.when(isPoint || isSpot, [&] {
@@ -44,6 +48,7 @@ void Light::describe(ParameterVisitor& v) {
                  {.label = "Angular size",
                   .min = 0,
                   .max = 90,
+                  .scale = Scale::Log,
                   .unit = "deg",
                   .help = "Full angular diameter; 0 casts hard shadows, the sun has 0.53.",
                   .redo = Redo::Samples});
@@ -86,6 +91,7 @@ void Environment::describe(ParameterVisitor& v) {
              {.label = "Scale",
               .min = 0,
               .max = 1e4,
+              .scale = Scale::Log,
               .help = "Factor on the environment's radiance.",
               .redo = Redo::Samples});
     v.number("rotate-deg", rotateDeg,

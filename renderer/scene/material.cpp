@@ -56,6 +56,7 @@ void Material::describeTransmission(ParameterVisitor& v) {
         v.number("thickness", thickness,
                  {.label = "Thickness",
                   .max = 1000,
+                  .scale = Scale::Log,
                   .unit = "m",
                   .help = "0 is a thin wall that does not refract; any value above 0 makes the boundary of a solid.",
                   .redo = Redo::Samples});
@@ -120,12 +121,14 @@ void Material::describeLayers(ParameterVisitor& v) {
         v.number("iridescence-thickness-min", iridescenceThicknessMin,
                  {.label = "Least film thickness",
                   .max = 10000,
+                  .scale = Scale::Log,
                   .unit = "nm",
                   .help = "Where the thickness texture is 0.",
                   .redo = Redo::Samples});
         v.number("iridescence-thickness-max", iridescenceThicknessMax,
                  {.label = "Film thickness",
                   .max = 10000,
+                  .scale = Scale::Log,
                   .unit = "nm",
                   .help = "Where the thickness texture is 1, and without one.",
                   .redo = Redo::Samples});

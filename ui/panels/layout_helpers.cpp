@@ -26,6 +26,10 @@ void beginDrawer(const char* name, const ImRect& area, ImU32 colour, ImVec2 padd
     beginArea(name, area, colour, padding, (kFixedWindow & ~ImGuiWindowFlags_NoBringToFrontOnFocus) | extra);
 }
 
+void beginCard(const char* name, const ImRect& area, ImU32 colour, ImVec2 padding) {
+    beginArea(name, area, colour, padding, kFixedWindow & ~ImGuiWindowFlags_NoBringToFrontOnFocus);
+}
+
 void endFixed() { ImGui::End(); }
 
 std::string sceneName(const AppState& state) {

@@ -70,7 +70,7 @@ void drawReference(AppState& state) {
     markItem("reference-file");
     ImGui::SameLine(0, px(8));
     if ((textButton("load-reference", "Load", nullptr, false, px(64)) || entered) && !state.referenceFile.empty())
-        state.metrics.loadReference(state.referenceFile, state.sceneExposureEv());
+        state.metrics.loadReference(state.referenceFile);
 }
 
 /// A table of metrics and panes; of two panes the better value is bright.
@@ -118,7 +118,10 @@ void drawValues(AppState& state, const LiveMeasurement& measured) {
         if (pane.nonFinitePixels > 0)
             smallText(fmt::format("{}: {} pixels not finite, counted nowhere", pane.module, pane.nonFinitePixels),
                       palette::kWarning);
-    smallText(fmt::format("measured in {:.0f} ms", measured.ms), palette::kFaint);
+    const std::string of =
+        measured.samples > 0 ? fmt::format("{} spp", measured.samples) : fmt::format("frame {}", measured.frame);
+    smallText(fmt::format("of {}, measured in {:.0f} ms", of, measured.ms), palette::kFaint);
+    markItem("measured-of:" + of);
 }
 
 /// The metric of the map, or RMSE, over samples on logarithmic axes.
@@ -138,7 +141,12 @@ void drawCurves(const AppState& state) {
             const double x = std::log10(static_cast<double>(p.samples)), y = std::log10(p.values.at(id));
             lowX = std::min(lowX, x), highX = std::max(highX, x), lowY = std::min(lowY, y), highY = std::max(highY, y);
         }
-    if (highX <= lowX) return smallText("The curve begins with the second measurement.", palette::kFaint);
+    if (highX <= lowX) {
+        const bool accumulates = state.snapshot && state.snapshot->accumulatedSamples > 0;
+        return smallText(accumulates ? "The curve begins with the second measurement."
+                                     : "A curve over samples is of modules that accumulate them.",
+                         palette::kFaint);
+    }
     if (highY - lowY < 0.3) lowY -= 0.15, highY += 0.15;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, height = px(96);

@@ -46,6 +46,8 @@ constexpr ImGuiWindowFlags kFixedWindow = ImGuiWindowFlags_NoDecoration | ImGuiW
 void beginFixed(const char* name, const ImRect& area, ImU32 colour, ImVec2 padding, ImGuiWindowFlags extra = 0);
 /// The same in front of what is fixed: a drawer, whose buttons have the mouse.
 void beginDrawer(const char* name, const ImRect& area, ImU32 colour, ImVec2 padding, ImGuiWindowFlags extra = 0);
+/// In front as well, but it leaves the keyboard where it is: for news.
+void beginCard(const char* name, const ImRect& area, ImU32 colour, ImVec2 padding);
 void endFixed();
 
 /// "Sponza" for /a/b/Sponza.gltf, or the scene's own title.

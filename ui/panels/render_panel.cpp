@@ -17,16 +17,17 @@ struct Group {
 };
 constexpr Group kGroups[] = {{"Image", "render."}, {"Path tracing", "path."}, {"Sampling", "sampler."}};
 
-/// A section over a group of parameters; nothing if no row answers the search.
-void drawGroup(AppState& state, const char* title, const std::string& prefix) {
+/// A section over a group of parameters; nothing, and false, if no row answers the search.
+bool drawGroup(AppState& state, const char* title, const std::string& prefix) {
     const std::string& search = state.parameterSearch;
     bool any = false;
     for (const ParameterInfo* info : state.document.group(prefix))
         any = any || (info->active && (search.empty() || matches(search, info->label) || matches(search, info->id)));
-    if (!any) return;
+    if (!any) return false;
     ImGui::PushID(prefix.c_str());
     if (section(title)) parameterRows(state, prefix, search);
     ImGui::PopID();
+    return true;
 }
 
 /// Ends that are often wanted, for the module that accumulates.
@@ -77,14 +78,16 @@ void drawRenderPanel(AppState& state) {
     searchField("parameter-search", state.parameterSearch, "Search parameters");
     if (state.parameterSearch.empty()) drawTarget(state);
     std::set<std::string> drawn;
+    bool any = false;
     for (int pane = 0; pane < state.paneCount(); ++pane) {
         const std::string instance = state.module(pane);
         if (!drawn.insert(instance).second || state.document.group(instance + ".").empty()) continue;
         const std::string title =
             std::string(findModule(instance).title) + (instance.find('@') == std::string::npos ? "" : "  " + instance);
-        drawGroup(state, title.c_str(), instance + ".");
+        any |= drawGroup(state, title.c_str(), instance + ".");
     }
-    for (const Group& group : kGroups) drawGroup(state, group.title, group.prefix);
+    for (const Group& group : kGroups) any |= drawGroup(state, group.title, group.prefix);
+    if (!any) dimText("No parameter here has that in its name.");
 }
 
 }  // namespace lumi

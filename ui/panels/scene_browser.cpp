@@ -10,6 +10,8 @@ namespace lumi {
 
 namespace {
 
+constexpr double kQuickLoadSeconds = 0.4;  ///< a load is told of once it takes longer
+
 /// Built-in scenes do not change while the program runs.
 const std::vector<SceneEntry>& builtIn() {
     static const std::vector<SceneEntry> entries = listScenes();
@@ -99,6 +101,15 @@ void drawLoading(AppState& state, const LoadStatus& status, const ImRect& area) 
     ImGui::EndGroup();
 }
 
+/// Over the scene before, which stays while the next one loads.
+void drawLoadingCard(AppState& state, const LoadStatus& status, const ImRect& area) {
+    const ImVec2 size(std::min(px(420), area.GetWidth() - px(24)), px(116));
+    const ImVec2 corner(std::floor(area.GetCenter().x - 0.5f * size.x), area.Min.y + px(56));
+    beginCard("loading-card", ImRect(corner, corner + size), palette::kOverlay, ImVec2(px(20), px(12)));
+    drawLoading(state, status, ImRect(corner, corner + size));
+    endFixed();
+}
+
 }  // namespace
 
 void drawSceneBrowser(AppState& state, const ImRect& area) {
@@ -128,11 +139,11 @@ void drawSceneBrowser(AppState& state, const ImRect& area) {
 
 void drawEmptyPicture(AppState& state, const ImRect& area) {
     const LoadStatus status = state.session.loadStatus();
+    static double restedAt = 0;  // of one window, like ImGui's own state
+    if (!status.loading) restedAt = ImGui::GetTime();
     if (state.snapshot && !status.loading) return;
-    if (state.snapshot) {  // the old scene stays while the next one loads
-        ImDrawList& list = *ImGui::GetForegroundDrawList();
-        const float width = area.GetWidth() * std::clamp(status.fraction, 0.02f, 1.0f);
-        list.AddRectFilled(area.Min, area.Min + ImVec2(width, px(3)), palette::kAccent);
+    if (state.snapshot) {
+        if (ImGui::GetTime() - restedAt > kQuickLoadSeconds) drawLoadingCard(state, status, area);
         return;
     }
     beginFixed("empty", area, palette::kBackground, ImVec2(0, 0), ImGuiWindowFlags_NoBackground);

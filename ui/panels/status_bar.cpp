@@ -116,14 +116,16 @@ void drawToast(AppState& state, const ImRect& area) {
     constexpr double kSeconds = 7;
     static uint64_t seen = 0;  // of one window, like ImGui's own state
     static double since = -100;
+    static Message raised;  ///< the one that is told; later news do not take its place
     const std::vector<Message> messages = state.log.messages();
     if (!messages.empty() && messages.back().serial > seen) {
-        if (messages.back().severity != Severity::Info) since = ImGui::GetTime();
+        for (const Message& message : messages)
+            if (message.serial > seen && message.severity != Severity::Info) since = ImGui::GetTime(), raised = message;
         seen = messages.back().serial;
     }
     const double age = ImGui::GetTime() - since;
     if (age > kSeconds || messages.empty() || state.messagesOpen) return;
-    const Message& last = messages.back();
+    const Message& last = raised;
     const auto alpha = static_cast<float>(std::clamp((kSeconds - age) * 2, 0.0, 1.0));
     const float width = std::min(px(560), area.GetWidth() - px(40));
     const ImVec2 textSize = ImGui::CalcTextSize(last.text.c_str(), nullptr, false, width - px(60));

@@ -28,19 +28,20 @@ void drawSceneButton(AppState& state, const ImRect& area, float width) {
     if (clicked) runCommand(state, UiCommand::OpenScene);
 }
 
-void drawTransport(AppState& state, const ImRect& area) {
+/// `narrow`: there is room for what is pressed most.
+void drawTransport(AppState& state, const ImRect& area, bool narrow) {
     const auto button = [&](const char* name, Icon icon, const char* what, UiCommand command, bool on = false) {
         ImGui::SameLine(0, px(1));
         centreNext(area, px(28));
         if (iconButton(name, icon, tipFor(what, command), on)) runCommand(state, command);
     };
-    button("restart", Icon::Restart, "Restart at frame 0", UiCommand::Restart);
-    button("step-back", Icon::StepBack, "One frame back", UiCommand::StepBack);
-    const bool playing = state.session.playing();
+    if (!narrow) button("restart", Icon::Restart, "Restart at frame 0", UiCommand::Restart);
+    if (!narrow) button("step-back", Icon::StepBack, "One frame back", UiCommand::StepBack);
+    const bool playing = state.timePlays();
     button("play", playing ? Icon::Pause : Icon::Play, playing ? "Pause time" : "Play time", UiCommand::PlayTime,
            playing);
-    button("step", Icon::Step, "One frame forward", UiCommand::Step);
-    if (state.snapshot) {
+    button("step", Icon::Step, "One frame forward; time goes on in it if it was played", UiCommand::Step);
+    if (state.snapshot && !narrow) {
         ImGui::SameLine(0, px(8));
         const WithFont mono(ui().fonts.mono);
         centreNext(area, ImGui::GetFontSize());
@@ -80,7 +81,8 @@ void drawProgress(AppState& state, const ImRect& area) {
 
 void drawToolbar(AppState& state, const ImRect& area) {
     beginFixed("toolbar", area, palette::kBar, ImVec2(px(12), 0));
-    const bool wide = area.GetWidth() >= px(900), medium = area.GetWidth() >= px(700);
+    const bool wide = area.GetWidth() >= px(900), medium = area.GetWidth() >= px(700),
+               narrow = area.GetWidth() < px(600);
     drawMark(*ImGui::GetWindowDrawList(), ImVec2(area.Min.x + px(25), area.GetCenter().y), px(24));
     ImGui::SetCursorPosX(px(46));
     if (wide) {
@@ -89,11 +91,11 @@ void drawToolbar(AppState& state, const ImRect& area) {
         ImGui::TextUnformatted("Lumiscope");
         ImGui::SameLine(0, px(14));
     }
-    drawSceneButton(state, area, wide ? px(240) : px(130));
+    drawSceneButton(state, area, wide ? px(240) : narrow ? px(100) : px(130));
     if (state.document.present()) {
         ImGui::SameLine(0, px(12));
         ImGui::Dummy(ImVec2(0, 0));
-        drawTransport(state, area);
+        drawTransport(state, area, narrow);
     }
     const float right = area.GetWidth() - px(12), icons = px(30);
     float x = right - 3 * icons - px(114);
