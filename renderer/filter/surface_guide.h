@@ -7,7 +7,7 @@ namespace lumi {
 /// On the sky inverse depth and normals are 0, which gives every neighbour the weight 0.
 struct SurfaceGuide {
     int width = 0, height = 0;
-    const float* inverseDepth = nullptr;  ///< 1/m; affine in screen space on a plane in perspective
+    const float* inverseDepth = nullptr;  ///< 1/m; affine in screen space on a plane, see also orthographicGuide()
     const float* slopeX = nullptr;        ///< d(inverseDepth)/dx per pixel on the tangent plane
     const float* slopeY = nullptr;
     const float* normal[3] = {nullptr, nullptr, nullptr};  ///< world space, unit

@@ -130,7 +130,7 @@ void drawCurves(const AppState& state) {
     const std::shared_ptr<const ConvergenceCurves> noted = state.metrics.curves();
     static const ConvergenceCurves kNone;
     const ConvergenceCurves& curves = noted ? *noted : kNone;
-    double lowX = 1e300, highX = 0, lowY = 1e300, highY = 0;
+    double lowX = 1e300, highX = -1e300, lowY = 1e300, highY = -1e300;
     const auto usable = [&](const ConvergencePoint& p) {
         const auto v = p.values.find(id);
         return p.samples > 0 && v != p.values.end() && std::isfinite(v->second) && v->second > 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "filter/orthographic_guide.h"
 #include "reconstruct/lineage_rows.h"
 #include "reconstruct/svgf/svgf_taps.h"
 
@@ -70,9 +71,14 @@ void SvgfModule::handOver(TemporalHistory& next) {
     for (size_t c = 0; c < kComponents; ++c) std::swap(kept[c].rgb, next.components[c].colour);
 }
 
+SurfaceGuide SvgfModule::surfaceGuideOf(const FrameContext& context) {
+    if (context.camera.projection == Projection::Perspective) return surfaceGuide(context.signals);
+    return orthographicGuide(context.signals, 2 * context.camera.halfHeight, depth_);
+}
+
 bool SvgfModule::estimateVariance(const FrameContext& context, const TemporalHistory& integrated) {
     const auto measured = context.timer.measure("variance estimation");
-    const SurfaceGuide guide = surfaceGuide(context.signals);
+    const SurfaceGuide guide = surfaceGuideOf(context);
     const float least = parameters_.varianceSource == VarianceSource::Spatial
                             ? std::numeric_limits<float>::max()
                             : static_cast<float>(parameters_.spatialVarianceFrames);
@@ -87,7 +93,7 @@ bool SvgfModule::estimateVariance(const FrameContext& context, const TemporalHis
 
 const SvgfModule::Levels* SvgfModule::filterSpatially(const FrameContext& context) {
     const auto measured = context.timer.measure("wavelet filter");
-    const SurfaceGuide guide = surfaceGuide(context.signals);
+    const SurfaceGuide guide = surfaceGuideOf(context);
     const AtrousSettings settings = atrousSettings();
     keepEdgeWeights(captured(), guide, settings, input_[0], input_[1]);
     const Levels* from = &input_;
@@ -108,7 +114,7 @@ const SvgfModule::Levels* SvgfModule::filterSpatially(const FrameContext& contex
 }
 
 size_t SvgfModule::byteCount() const {
-    size_t sum = ScreenFilter::byteCount();
+    size_t sum = ScreenFilter::byteCount() + depth_.bytes();
     for (const Levels* levels : {&input_, &levels_[0], &levels_[1], &feedback_})
         for (const Illumination& planes : *levels) sum += planes.bytes();
     return sum;

@@ -13,8 +13,8 @@ namespace lumi {
 /// output is the next frame's colour history.
 ///
 /// Differs from the paper:
-/// - Eq. 3 works on 1/depth in place of clip-space depth; both are affine on a plane in screen space, seen in
-///   perspective. Under an orthographic camera depth itself would be: slanted planes weigh less there.
+/// - Eq. 3 works on 1/depth in place of clip-space depth; both are affine on a plane in screen space. Under an
+///   orthographic camera depth itself is, and takes its place (filter/orthographic_guide.h).
 /// - The second moment is kept about the mean (filter/temporal.h): the same variance with more digits.
 /// - The 3x3 fall-back's weights, which the paper does not state, are equal.
 /// - Fig. 3 feeds colour *and* moments of the first level back, sec. 4.3 colour alone: the moments stay unfiltered.
@@ -70,6 +70,7 @@ private:
     using Levels = std::array<Illumination, kComponents>;
 
     AtrousSettings atrousSettings() const;
+    SurfaceGuide surfaceGuideOf(const FrameContext&);
     bool filter(const FrameContext&, const Step&, Image& out) override;
     bool integrate(const FrameContext&, const Step&);
     void handOver(TemporalHistory& next);
@@ -80,6 +81,7 @@ private:
     Parameters parameters_;
     Levels input_;      ///< of the first level: integrated colour and its variance
     Levels levels_[2];  ///< ping and pong
+    Image depth_;       ///< of the guide under an orthographic camera
     Levels feedback_;   ///< of the level whose output is the next frame's colour history
 };
 
