@@ -29,8 +29,8 @@ struct PathState {
     Vec3 radiance{0};
     LightReceiver scatter;  ///< the last scattering: what densities of light samples refer to
     float scatterPdf = 0;   ///< per solid angle; 0 after a delta lobe
-    MediumStack media;
-    Vec3 absorption{0};  ///< 1/m, of the innermost of them
+    MediumStack media;      ///< paths begin outside of all solids, wherever the camera is
+    Vec3 absorption{0};     ///< 1/m, of the innermost of them
     SampleStream stream;
     uint32_t hash = 0;  ///< see pathHash()
     uint32_t slot = 0, sample = 0;

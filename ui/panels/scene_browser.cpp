@@ -105,7 +105,7 @@ void drawLoading(AppState& state, const LoadStatus& status, const ImRect& area) 
 void drawLoadingCard(AppState& state, const LoadStatus& status, const ImRect& area) {
     const ImVec2 size(std::min(px(420), area.GetWidth() - px(24)), px(116));
     const ImVec2 corner(std::floor(area.GetCenter().x - 0.5f * size.x), area.Min.y + px(56));
-    beginCard("loading-card", ImRect(corner, corner + size), palette::kOverlay, ImVec2(px(20), px(12)));
+    beginCard("loading-card", ImRect(corner, corner + size), IM_COL32(28, 29, 33, 250), ImVec2(px(20), px(12)));
     drawLoading(state, status, ImRect(corner, corner + size));
     endFixed();
 }
