@@ -106,8 +106,8 @@ void Integrator::addLights(PathBatch& batch, int depth) const {
         PathVertex& vertex = batch.vertices[batch.vertexOf[light.path]];
         vertex.lightVisible = true;
         if (!isFinite(contribution)) continue;
-        vertex.directDiffuse = batch.splits[i].diffuse * light.through * factor;
-        vertex.directSpecular = batch.splits[i].specular * light.through * factor;
+        vertex.directDiffuse = batch.splits[i].diffuse * factor;
+        vertex.directSpecular = batch.splits[i].specular * factor;
     }
 }
 

@@ -45,7 +45,9 @@ void Integrator::passThinWalls(PathBatch& batch, TraceCounts& counts) const {
             if (!hits[i].valid()) {  // nothing stands before the light any more
                 batch.blocked[light.pending] = 0;
                 batch.pending[light.pending].contribution *= light.through;
-                batch.pending[light.pending].through = light.through;
+                if (batch.splits.empty()) continue;
+                batch.splits[light.pending].diffuse *= light.through;
+                batch.splits[light.pending].specular *= light.through;
                 continue;
             }
             const InstanceRecord& instance = scene_.tables.instances[hits[i].instance];

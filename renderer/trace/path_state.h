@@ -29,21 +29,20 @@ struct PathState {
     Vec3 radiance{0};
     LightReceiver scatter;  ///< the last scattering: what densities of light samples refer to
     float scatterPdf = 0;   ///< per solid angle; 0 after a delta lobe
-    MediumStack media;      ///< paths begin outside of all solids, wherever the camera is
-    Vec3 absorption{0};     ///< 1/m, of the innermost of them
+    Vec3 absorption{0};     ///< 1/m, of the innermost of `media`
     SampleStream stream;
     uint32_t hash = 0;  ///< see pathHash()
     uint32_t slot = 0, sample = 0;
     int diffuseCount = 0, specularCount = 0;
     bool alive = true;
     bool diffuseBefore = false;
+    MediumStack media;  ///< the solids it is in; it begins outside of all, wherever the camera is
 };
 
 /// A light sample that waits for its shadow ray.
 struct PendingLight {
     uint32_t path = 0;
     Vec3 contribution{0};  ///< to the path, throughput included
-    Vec3 through{1};       ///< of thin walls on the way, in `contribution`, not yet in its split
     bool delta = false;    ///< without extent
     bool sky = false;      ///< it and its split are still to be multiplied by the sky's radiance at `skyPlace`
     Vec2 skyPlace{0};
