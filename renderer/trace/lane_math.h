@@ -65,7 +65,8 @@ LUMI_LANE Lane3 cosineHemisphere(float u, float v) {
 
 /// A start for rays that leave a surface to the side of `normal`, as offsetOrigin() [Waechter & Binder 2019].
 LUMI_LANE float offsetCoordinate(float position, float normal, float extra) {
-    const int32_t steps = static_cast<int32_t>(256.0f * normal);
+    // Of lanes whose result nobody takes the normal may be anything, and an int is not.
+    const int32_t steps = static_cast<int32_t>(least(most(-256.0f, 256.0f * normal), 256.0f));
     const float moved = bitsToFloat(floatToBits(position) + (position < 0 ? -steps : steps));
     const float result = std::fabs(position) < 1.0f / 32 ? position + (1.0f / 65536) * normal : moved;
     return result + normal * extra;
