@@ -37,7 +37,7 @@ void Integrator::passThinWalls(PathBatch& batch, TraceCounts& counts) const {
     for (int wall = 0; wall <= kMostWalls && !rays.empty(); ++wall) {
         hits.resize(rays.size());
         intersectRays(scene_.embree, rays, hits, Coherence::Incoherent);
-        if (wall > 0) counts.shadowRays += rays.size();
+        counts.shadowRays += rays.size();
         size_t kept = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
             BatchRay ray = rays[i];

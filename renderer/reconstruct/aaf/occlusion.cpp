@@ -17,6 +17,7 @@ constexpr int kBand = 64;  ///< rows whose shadow rays are sent together
 /// Positions that one light was sampled at.
 struct LightSpread {
     double count = 0;
+    float size = 0;  ///< its deviation, once all are there
     glm::dvec3 sum{0}, squares{0};
     void add(const Vec3& position) {
         const glm::dvec3 p(position);
@@ -100,8 +101,9 @@ bool measureOcclusion(const FrameContext& context, Emitters& emitters, Image& ou
             out.at(1, x, y) = 1;
         }
     }
+    for (auto& [emitter, spread] : spreads) spread.size = spread.count > 1 ? spread.deviation() : 0;
     for (size_t i = 0; i < sampled.size(); ++i) {
-        if (sampled[i] && sampled[i]->count > 1) out.plane(2).data[i] = sampled[i]->deviation();
+        if (sampled[i] && sampled[i]->count > 1) out.plane(2).data[i] = sampled[i]->size;
         else out.plane(0).data[i] = out.plane(1).data[i] = 0;
     }
     return true;

@@ -195,13 +195,21 @@ TEST(SpotLight, ConesAndTheirEdge) {
     EXPECT_NEAR(seen(30), full * share * share, 1e-3 * full);
 }
 
-TEST(DirectionalLight, DeltaGivesItsIrradiance) {
+/// A sun without extent, where it stands in these tests, and what the floor shows of it.
+constexpr float kSunIrradiance = 3;
+Light deltaSun(float irradiance = kSunIrradiance) {
     Light light;
     light.type = LightType::Directional;
-    light.irradiance = Vec3(3);
-    const Vec3 from(0.5f, 1, 0.2f);
-    const double expected = kAlbedo / kPi * 3 * glm::normalize(from).y;
-    EXPECT_NEAR(seenOnFloor(light, lightAt(from, Vec3(0)), 4, DirectStrategy::Mis).mean, expected, 1e-5 * expected);
+    light.irradiance = Vec3(irradiance);
+    return light;
+}
+const Vec3 kSunFrom(0.5f, 1, 0.2f);
+double seenOfSunFrom(const Vec3& from) { return kAlbedo / kPi * kSunIrradiance * glm::normalize(from).y; }
+
+TEST(DirectionalLight, DeltaGivesItsIrradiance) {
+    const double expected = seenOfSunFrom(kSunFrom);
+    EXPECT_NEAR(seenOnFloor(deltaSun(), lightAt(kSunFrom, Vec3(0)), 4, DirectStrategy::Mis).mean, expected,
+                1e-5 * expected);
 }
 
 /// A node at `position` that turns the light to the origin, scaled by `scale`.
@@ -219,63 +227,45 @@ const Vec3 kVanishingScales[] = {Vec3(0),       Vec3(1e-20f),  Vec3(1e-30f), Vec
                                  Vec3(1, 1, 0), Vec3(0, 1, 1), Vec3(0, 0, 1)};
 
 TEST(DirectionalLight, ScaleChangesNeitherItNorTheOthers) {
-    Light light;
-    light.type = LightType::Directional;
-    light.irradiance = Vec3(3);
-    const Vec3 from(0.5f, 1, 0.2f), scaledFrom(-0.3f, 0.8f, 0.4f);
-    const double one = kAlbedo / kPi * 3 * glm::normalize(from).y;
-    const double both = one + kAlbedo / kPi * 3 * glm::normalize(scaledFrom).y;
+    const Vec3 scaledFrom(-0.3f, 0.8f, 0.4f);
+    const double both = seenOfSunFrom(kSunFrom) + seenOfSunFrom(scaledFrom);
     for (const Vec3& scale : kVanishingScales) {
         TinyScene tiny;
-        tiny.addLight(light, lightAt(from, Vec3(0)));
-        addScaledLight(tiny, light, scaledFrom, scale);
+        tiny.addLight(deltaSun(), lightAt(kSunFrom, Vec3(0)));
+        addScaledLight(tiny, deltaSun(), scaledFrom, scale);
         const Estimate e = seenOnFloor(tiny, 60000, DirectStrategy::Mis);
         EXPECT_LT(e.z(both), kMostSigmas) << e.mean << " against " << both << " by " << scale.x << ' ' << scale.z;
     }
 }
 
 TEST(DirectionalLight, UnderAParentOfScaleZeroTurnsAsItsNodes) {
-    Light light;
-    light.type = LightType::Directional;
-    light.irradiance = Vec3(3);
-    const Vec3 from(0.5f, 1, 0.2f);
     TinyScene tiny;
-    addScaledLight(tiny, light, from, Vec3(1));
+    addScaledLight(tiny, deltaSun(), kSunFrom, Vec3(1));
     Node parent;
     parent.local.scale = Vec3(0);
     tiny.scene.nodes = {parent, tiny.scene.nodes[0]};
     tiny.scene.nodes[1].parent = 0;
     tiny.scene.lights[0].node = 1;
-    const double expected = kAlbedo / kPi * 3 * glm::normalize(from).y;
+    const double expected = seenOfSunFrom(kSunFrom);
     EXPECT_NEAR(seenOnFloor(tiny, 4, DirectStrategy::Mis).mean, expected, 1e-5 * expected);
 }
 
 /// Of a matrix of zeros nothing is known of where the light looks; the other one must not care.
 TEST(DirectionalLight, WithoutAFrameLeavesTheOthersAlone) {
-    Light light;
-    light.type = LightType::Directional;
-    light.irradiance = Vec3(3);
-    const Vec3 from(0.5f, 1, 0.2f);
     TinyScene tiny;
-    tiny.addLight(light, lightAt(from, Vec3(0)));
-    tiny.addLight(light, scaling(Vec3(0)));  // seen from the floor, on its horizon
-    const double expected = kAlbedo / kPi * 3 * glm::normalize(from).y;
+    tiny.addLight(deltaSun(), lightAt(kSunFrom, Vec3(0)));
+    tiny.addLight(deltaSun(), scaling(Vec3(0)));  // seen from the floor, on its horizon
+    const double expected = seenOfSunFrom(kSunFrom);
     const Estimate e = seenOnFloor(tiny, 4000, DirectStrategy::Mis);
     EXPECT_LT(e.z(expected), kMostSigmas) << e.mean << " against " << expected;
 }
 
 TEST(DirectionalLight, OfNoFiniteStrengthLeavesTheOthersAlone) {
-    Light light;
-    light.type = LightType::Directional;
-    light.irradiance = Vec3(3);
-    const Vec3 from(0.5f, 1, 0.2f);
     TinyScene tiny;
-    tiny.addLight(light, lightAt(from, Vec3(0)));
-    for (const float strength : {kInfinity, std::nanf("")}) {
-        light.irradiance = Vec3(strength);
-        tiny.addLight(light, lightAt(Vec3(0, 1, 0), Vec3(0)));
-    }
-    const double expected = kAlbedo / kPi * 3 * glm::normalize(from).y;
+    tiny.addLight(deltaSun(), lightAt(kSunFrom, Vec3(0)));
+    for (const float strength : {kInfinity, std::nanf("")})
+        tiny.addLight(deltaSun(strength), lightAt(Vec3(0, 1, 0), Vec3(0)));
+    const double expected = seenOfSunFrom(kSunFrom);
     EXPECT_NEAR(seenOnFloor(tiny, 4, DirectStrategy::Mis).mean, expected, 1e-5 * expected);
 }
 
