@@ -16,11 +16,7 @@ std::span<const BatchRay> raysOf(const RecordedRays& record, const RecordedRays:
 
 uint64_t bareHits(RTCScene scene, RTCIntersectContext& context, const BatchRay& r, bool anyHit) {
     RTCRayHit query;
-    query.ray.org_x = r.origin.x, query.ray.org_y = r.origin.y, query.ray.org_z = r.origin.z;
-    query.ray.dir_x = r.direction.x, query.ray.dir_y = r.direction.y, query.ray.dir_z = r.direction.z;
-    query.ray.tnear = r.tmin, query.ray.tfar = r.tmax, query.ray.time = r.time;
-    query.ray.mask = ~0u, query.ray.id = r.id;
-    query.ray.flags = r.fromCamera ? EmbreeScene::kFromCamera : 0;
+    toEmbree(r, query.ray);
     if (anyHit) {
         rtcOccluded1(scene, &context, &query.ray);
         return query.ray.tfar < 0;

@@ -46,8 +46,9 @@ unsigned flagsOf(const BatchRay& ray) { return ray.fromCamera ? EmbreeScene::kFr
 /// Is it one that Embree can follow? It asserts that no number of a ray is NaN, that places and directions do not pass
 /// 1.8e18, and that no ray begins behind its origin. Others meet nothing.
 bool isTraceable(const BatchRay& r) {
-    const Vec3 sum = glm::abs(r.origin) + glm::abs(r.direction);
-    return (sum.x + sum.y + sum.z < 1e18f) & (r.tmin >= 0) & (r.tmax >= -kInfinity);
+    // Not by glm::abs(), which branches: which way directions point nobody foresees.
+    const auto size = [](const Vec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+    return (size(r.origin) + size(r.direction) < 1e18f) & (r.tmin >= 0) & (r.tmax >= -kInfinity);
 }
 
 /// Rays in their order.
@@ -70,21 +71,10 @@ void fill(PacketRay& packet, int* valid, std::span<const BatchRay> rays, Order o
     }
 }
 
-/// In place of one that cannot be traced: one that ends before it begins.
-RTCRay singleRay(const BatchRay& r) {
-    RTCRay ray;
-    if (!isTraceable(r)) {
-        ray.org_x = ray.org_y = ray.org_z = ray.dir_x = ray.dir_y = ray.time = 0;
-        ray.dir_z = ray.tnear = 1, ray.tfar = 0;
-        ray.mask = ray.id = ray.flags = 0;
-        return ray;
-    }
-    ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z;
-    ray.dir_x = r.direction.x, ray.dir_y = r.direction.y, ray.dir_z = r.direction.z;
-    ray.tnear = r.tmin, ray.tfar = r.tmax;
-    ray.time = r.time;
-    ray.mask = ~0u, ray.id = r.id, ray.flags = flagsOf(r);
-    return ray;
+/// `r`, or in place of one that cannot be traced one that ends before it begins.
+const BatchRay& traceable(const BatchRay& r) {
+    static constexpr BatchRay kNone{.tmin = 1, .tmax = 0};
+    return isTraceable(r) ? r : kNone;
 }
 
 uint32_t instanceOf(uint32_t geometry, uint32_t placed) {
@@ -192,7 +182,7 @@ void occludedStream(RTCScene scene, std::span<const BatchRay> rays, std::span<ui
     RTCRay queries[kAtOnce];
     for (size_t first = 0; first < rays.size(); first += kAtOnce) {
         const size_t count = std::min(kAtOnce, rays.size() - first);
-        for (size_t i = 0; i < count; ++i) queries[i] = singleRay(rays[first + i]);
+        for (size_t i = 0; i < count; ++i) toEmbree(traceable(rays[first + i]), queries[i]);
         rtcOccluded1M(scene, &context, queries, static_cast<unsigned>(count), sizeof(RTCRay));
         for (size_t i = 0; i < count; ++i) blocked[first + i] = queries[i].tfar < 0 ? 1 : 0;
     }
@@ -217,13 +207,16 @@ void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std
     if (sorted) return intersectSorted<8>(scene, rays, hits, context);
     for (size_t i = 0; i < rays.size(); ++i) {
         RTCRayHit query;
-        query.ray = singleRay(rays[i]);
+        toEmbree(traceable(rays[i]), query.ray);
         query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(scene.handle(), &context, &query);
-        hits[i] = RawHit();
-        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-        hits[i] = {query.ray.tfar, instanceOf(query.hit.geomID, query.hit.instID[0]), query.hit.primID, query.hit.u,
-                   query.hit.v};
+        const RTCHit& found = query.hit;
+        RawHit& hit = hits[i];
+        const bool some = found.geomID != RTC_INVALID_GEOMETRY_ID;
+        hit.distance = some ? query.ray.tfar : kInfinity;
+        hit.instance = some ? instanceOf(found.geomID, found.instID[0]) : kNoInstance;
+        hit.primitive = found.primID;
+        hit.u = found.u, hit.v = found.v;
     }
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+#include <cstring>
 #include <span>
 
 #include "trace/embree_scene.h"
@@ -6,16 +8,28 @@
 
 namespace lumi {
 
-/// A ray as batches keep it; `id` seeds stochastic transparency.
+/// A ray as batches keep it, in the order of RTCRay; `id` seeds stochastic transparency.
 struct BatchRay {
     Vec3 origin{0};
     float tmin = 0;
     Vec3 direction{0, 0, -1};
-    float tmax = kInfinity;
     float time = 0;
+    float tmax = kInfinity;
     uint32_t id = 0;
     bool fromCamera = false;  ///< as Ray::fromCamera
 };
+
+/// Embree's ray. The numbers move as whole vectors: Embree reads them as such, and would wait for ones that were written
+/// one by one.
+inline void toEmbree(const BatchRay& r, RTCRay& ray) {
+    constexpr size_t kAlike = offsetof(RTCRay, mask);
+    static_assert(offsetof(BatchRay, tmin) == offsetof(RTCRay, tnear) &&
+                  offsetof(BatchRay, direction) == offsetof(RTCRay, dir_x) &&
+                  offsetof(BatchRay, time) == offsetof(RTCRay, time) &&
+                  offsetof(BatchRay, tmax) == offsetof(RTCRay, tfar) && offsetof(BatchRay, id) == kAlike);
+    std::memcpy(static_cast<void*>(&ray), &r, kAlike);
+    ray.mask = ~0u, ray.id = r.id, ray.flags = r.fromCamera ? EmbreeScene::kFromCamera : 0;
+}
 
 /// What Embree says of a hit; bodies of lights are named later.
 struct RawHit {

@@ -267,7 +267,7 @@ void toBatchRays(std::span<const Ray> rays, std::vector<BatchRay>& out, size_t f
     for (size_t i = 0; i < rays.size(); ++i) {
         const Ray& r = rays[i];
         const uint32_t id = ids.empty() ? pcgHash(static_cast<uint32_t>(first + i)) : ids[first + i];
-        out[i] = {r.origin, r.tmin, r.direction, r.tmax, r.time, id, r.fromCamera};
+        out[i] = {r.origin, r.tmin, r.direction, r.time, r.tmax, id, r.fromCamera};
     }
 }
 
