@@ -196,7 +196,7 @@ void Integrator::samplePlainLights(PathBatch& batch) const {
     const auto count = static_cast<size_t>(lanes.count);
     const auto path = [&](int i) -> const PathState& { return batch.paths[batch.active[lanes.row[i]]]; };
     for (int i = 0; i < lanes.count; ++i) setReceiver(batch.receivers[i], lanes, i, path(i).ray.time);
-    scene_.lights.choose({batch.receivers, count}, lanes.lightX, lanes.lightY, {batch.choices, count});
+    scene_.lights.choose(lanes, {batch.receivers, count}, {batch.choices, count});
     scene_.lights.samplePoints({batch.choices, count}, {batch.receivers, count}, batch.lights, lanes);
     if (settings_.strategy == DirectStrategy::Bsdf)
         for (int i = 0; i < lanes.count; ++i)

@@ -14,6 +14,31 @@ LUMI_LANE void put(PlainLanes::Column3& c, int i, bool mine, Lane3 v) {
 }
 LUMI_LANE void put(PlainLanes::Column& c, int i, bool mine, float v) { c[i] = mine ? v : c[i]; }
 
+void weighSun(const SunCone& sun, const PlainLanes& lanes, float* __restrict weights) {
+    const SunCone s = sun;
+    const int count = lanes.count;
+#pragma GCC ivdep
+    for (int i = 0; i < count; ++i) {
+        const float middle = dot(at(lanes.geometricNormal, i), {s.x, s.y, s.z});
+        const float sine = std::sqrt(most(0.0f, 1 - square(middle)));
+        const float cosine = middle < s.cosHalf ? middle * s.cosHalf + sine * s.sinHalf : middle;
+        weights[i] = s.irradiance * most(cosine, 0.0f);
+    }
+}
+
+void weighSky(const SkyCube& sky, const PlainLanes& lanes, float* __restrict weights) {
+    const SkyCube s = sky;
+    const int count = lanes.count;
+#pragma GCC ivdep
+    for (int i = 0; i < count; ++i) {
+        const Lane3 n = at(lanes.geometricNormal, i);
+        const float x = s.cosine * n.x - s.sine * n.z, z = s.sine * n.x + s.cosine * n.z;
+        const float sum = square(x) * (x < 0 ? s.side[1] : s.side[0]) +
+                          square(n.y) * (n.y < 0 ? s.side[3] : s.side[2]) + square(z) * (z < 0 ? s.side[5] : s.side[4]);
+        weights[i] = most(sum, s.least);
+    }
+}
+
 struct Sample {
     Lane3 direction, target, radiance, position;
     float distance, pdf, weighs;
@@ -81,6 +106,30 @@ void points(LightLanes& lights, PlainLanes& lanes) {
     }
 }
 
+void suns(LightLanes& lights, PlainLanes& lanes) {
+    const int count = lanes.count;
+#pragma GCC ivdep
+    for (int i = 0; i < count; ++i) {
+        const bool mine = lights.kind[i] == LightLanes::kSun;
+        const Lane3 middle = at(lights.first, i);
+        const float oneMinusCos = lights.second.x[i];
+        const bool wide = oneMinusCos > 0;
+        // Uniform in the cone, as sampleCone().
+        const float height = lanes.lightPointX[i] * oneMinusCos;
+        const float r = std::sqrt(most(0.0f, height * (2 - height)));
+        const SinCos phi = sinCosTurns(lanes.lightPointY[i]);
+        const Lane3 inCone = unit(toWorld(frameAround(middle), {r * phi.cosine, r * phi.sine, 1 - height}));
+        Sample s;
+        s.direction = s.position = choose(wide, inCone, middle);
+        s.target = {0, 0, 0};
+        s.radiance = at(lights.value, i);
+        s.distance = kInfinite;
+        s.pdf = wide ? 1 / (2 * kLanePi * (wide ? oneMinusCos : 1.0f)) : 1.0f;
+        s.weighs = wide ? 1.0f : 0.0f;
+        putSample(lights, lanes, i, mine, s);
+    }
+}
+
 LUMI_LANE float partOf(float x, float low, float high) {
     const float size = high - low;
     return size > 0 ? within((x - low) / (size > 0 ? size : 1.0f), 0.0f, kBelowOne) : 0.5f;
@@ -114,7 +163,7 @@ void sky(const SkyGrid& grid, LightLanes& lights, PlainLanes& lanes) {
 }  // namespace
 
 const LightLaneKernels& lightLaneTable() {
-    static const LightLaneKernels table{triangles, points, sky};
+    static const LightLaneKernels table{weighSun, weighSky, triangles, points, suns, sky};
     return table;
 }
 

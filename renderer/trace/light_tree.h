@@ -19,13 +19,14 @@ public:
 
     bool empty() const { return nodes_.empty(); }
     /// Draws a light for each point by u and v in [0, 1), or what is elsewhere; see LightTreeKernels.
-    void pick(const LightTreePoint* points, const float* elsewhere, const float* u, const float* v,
+    void pick(const LightTreePoints& points, const float* elsewhere, const float* u, const float* v,
               LightTreeChoice* choices, int count) const {
         kernels_->pick(view(), points, elsewhere, u, v, choices, count);
     }
     LightTreeChoice pick(const LightTreePoint& point, float elsewhere, Vec2 u) const {
         LightTreeChoice choice;
-        pick(&point, &elsewhere, &u.x, &u.y, &choice, 1);
+        const LightTreePoint& p = point;
+        pick({&p.x, &p.y, &p.z, &p.normalX, &p.normalY, &p.normalZ, p.facing}, &elsewhere, &u.x, &u.y, &choice, 1);
         return choice;
     }
     /// The probability with which pick() draws `light`.

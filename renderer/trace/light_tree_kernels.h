@@ -58,6 +58,13 @@ struct LightTreePoint {
     int facing = 0;  ///< 0 any way, 1 along the normal, 2 along it and against it
 };
 
+/// Points that face alike, a column a number.
+struct LightTreePoints {
+    const float *x, *y, *z;
+    const float *normalX, *normalY, *normalZ;
+    int facing = 0;
+};
+
 struct LightTreeChoice {
     uint32_t light = ~0u;    ///< ~0: none of the tree
     bool elsewhere = false;  ///< the choice fell on what is not in the tree
@@ -72,7 +79,7 @@ struct LightTreeChoice {
 struct LightTreeKernels {
     /// Draws a light for each of `count` points, by two random numbers for each. Points walk down together, a node a
     /// round, so that one's arithmetic and memory are not waited for by the next.
-    void (*pick)(const LightTreeView& tree, const LightTreePoint* points, const float* elsewhere, const float* u,
+    void (*pick)(const LightTreeView& tree, const LightTreePoints& points, const float* elsewhere, const float* u,
                  const float* v, LightTreeChoice* out, int count);
     /// Probability of the light at the end of `way`.
     float (*probability)(const LightTreeView& tree, const LightTreePoint& point, float elsewhere,

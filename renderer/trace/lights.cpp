@@ -8,13 +8,6 @@
 #include "trace/surface.h"
 
 namespace lumi {
-namespace {
-
-/// The sky counts at least as this part of its mean: parts of it shine from behind the plane that faces away from it.
-constexpr float kLeastSky = 0.05f;
-
-}  // namespace
-
 int Lights::entryOf(uint32_t instance, uint32_t primitive) const {
     if (firstEntry_[instance] != kNone) return static_cast<int>(firstEntry_[instance] + primitive);
     const uint32_t first = firstTriangle_[instance];
@@ -68,21 +61,6 @@ LightTreePoint treePoint(const LightReceiver& r) {
 
 }  // namespace
 
-/// One of the infinite lights, which have `share` of the choice and the sum `elsewhere` of importances importanceOf(i).
-template <class Importance>
-Lights::Choice Lights::chosenInfinite(float u, float share, float elsewhere, Importance&& importanceOf) const {
-    Choice chosen;
-    float rest = u * elsewhere;
-    for (uint32_t i = 0; finiteCount_ + i < entries_.size(); ++i) {
-        const float own = importanceOf(i);
-        if (!(own > 0)) continue;
-        chosen = {finiteCount_ + i, share * own / elsewhere};
-        if (rest < own) break;
-        rest -= own;
-    }
-    return chosen;
-}
-
 Lights::Choice Lights::choose(const LightReceiver& receiver, Vec2 pick) const {
     if (entries_.size() == 1) return {0, 1};
     if (receiver.sampling == LightSampling::Power) {
@@ -95,50 +73,6 @@ Lights::Choice Lights::choose(const LightReceiver& receiver, Vec2 pick) const {
     const LightTreeChoice choice = tree_.pick(treePoint(receiver), elsewhere, pick);
     if (!choice.elsewhere) return {choice.light, choice.probability};
     return chosenInfinite(choice.u, choice.probability, elsewhere, importanceOf);
-}
-
-void Lights::choose(std::span<const LightReceiver> receivers, const float* pickX, const float* pickY,
-                    std::span<Choice> choices) const {
-    const size_t count = receivers.size();
-    std::fill_n(choices.begin(), count, Choice());
-    if (picks_.empty()) return;
-    const bool byTree =
-        count > 0 && receivers[0].sampling == LightSampling::Tree && entries_.size() > 1 && finiteCount_ > 0;
-    if (!byTree) {
-        for (size_t i = 0; i < count; ++i) prefetch(choices[i] = choose(receivers[i], Vec2(pickX[i], pickY[i])));
-    } else {
-        constexpr size_t kAtOnce = 64;
-        LightTreePoint points[kAtOnce];
-        float elsewhere[kAtOnce];
-        LightTreeChoice found[kAtOnce];
-        // What the first infinite lights weigh is kept for the choice among them.
-        constexpr uint32_t kKept = 4;
-        float weights[kAtOnce][kKept];
-        const auto infinite = static_cast<uint32_t>(entries_.size()) - finiteCount_;
-        for (size_t first = 0; first < count; first += kAtOnce) {
-            const size_t size = std::min(kAtOnce, count - first);
-            for (size_t i = 0; i < size; ++i) {
-                points[i] = treePoint(receivers[first + i]);
-                elsewhere[i] = 0;
-                for (uint32_t k = 0; k < infinite; ++k) {
-                    const float own = infiniteImportance(receivers[first + i], k);
-                    if (k < kKept) weights[i][k] = own;
-                    elsewhere[i] += own;
-                }
-            }
-            tree_.pick(points, elsewhere, pickX + first, pickY + first, found, static_cast<int>(size));
-            for (size_t i = 0; i < size; ++i) {
-                Choice& choice = choices[first + i];
-                const auto importanceOf = [&](uint32_t k) {
-                    return k < kKept ? weights[i][k] : infiniteImportance(receivers[first + i], k);
-                };
-                choice = found[i].elsewhere
-                             ? chosenInfinite(found[i].u, found[i].probability, elsewhere[i], importanceOf)
-                             : Choice{found[i].light, found[i].probability};
-                prefetch(choice);
-            }
-        }
-    }
 }
 
 /// What its sample reads.

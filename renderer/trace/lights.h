@@ -56,10 +56,9 @@ public:
         float probability = 0;
     };
     static constexpr uint32_t kNone = ~0u;
-    /// Chooses a light for each receiver by two random numbers, pickX[i] and pickY[i], and asks the caches for what
-    /// samplePoint() will read of it.
-    void choose(std::span<const LightReceiver> receivers, const float* pickX, const float* pickY,
-                std::span<Choice> choices) const;
+    /// Chooses a light for each of the lanes by their random numbers lightX and lightY, and asks the caches for what
+    /// samplePoint() will read of it. Receiver i is lane i's, and faces to the front.
+    void choose(const PlainLanes& lanes, std::span<const LightReceiver> receivers, std::span<Choice> choices) const;
     /// A point of the chosen light by `u`. False if nothing can reach the receiver that way.
     bool samplePoint(const Choice& choice, const LightReceiver& receiver, Vec2 u, LightSample& out) const;
 
@@ -107,6 +106,10 @@ public:
     size_t byteCount() const;
 
 private:
+    /// The sky counts at least as this part of its mean: parts of it shine from behind the plane that faces away from
+    /// it.
+    static constexpr float kLeastSky = 0.05f;
+
     enum class Kind : uint8_t { Triangle, Body, Point, Directional, Environment };
     struct Entry {
         Kind kind = Kind::Triangle;
@@ -145,7 +148,13 @@ private:
     void addInfinite(const PosedScene& posed, Collected& collected);
 
     Choice choose(const LightReceiver& receiver, Vec2 pick) const;
+    void chooseByImportance(const PlainLanes& lanes, std::span<const LightReceiver> receivers,
+                            std::span<Choice> choices) const;
+    void weighInfinite(uint32_t infinite, const PlainLanes& lanes, std::span<const LightReceiver> receivers,
+                       float* weights) const;
     void prefetch(const Choice& choice) const;
+    /// One of the infinite lights, which have `share` of the choice and the sum `elsewhere` of importances
+    /// importanceOf(i).
     template <class Importance>
     Choice chosenInfinite(float u, float share, float elsewhere, Importance&& importanceOf) const;
     float infiniteImportance(const LightReceiver& receiver, uint32_t infinite) const;
@@ -153,6 +162,7 @@ private:
 
     static void placeTriangle(const Triangle& triangle, LightLanes& lights, int lane);
     static void placePoint(const Point& point, LightLanes& lights, int lane);
+    static void placeSun(const Sun& sun, LightLanes& lights, int lane);
     uint32_t placeLight(const Choice& choice, Vec2 u, LightLanes& lights, int lane) const;
     bool sampleTriangle(const Triangle& triangle, const LightReceiver& receiver, Vec2 u, LightSample& out) const;
     bool sampleBody(const BodyRecord& body, const LightReceiver& receiver, Vec2 u, LightSample& out) const;
@@ -183,6 +193,24 @@ private:
     EnvironmentLight environment_;
     bool hittable_ = false, hasEmitters_ = false, hasDelta_ = false;
 };
+
+template <class Importance>
+Lights::Choice Lights::chosenInfinite(float u, float share, float elsewhere, Importance&& importanceOf) const {
+    // No branch hangs on the random number.
+    Choice chosen;
+    float rest = u * elsewhere, importance = 0;
+    bool open = true;
+    for (uint32_t i = 0; finiteCount_ + i < entries_.size(); ++i) {
+        const float own = importanceOf(i);
+        const bool takes = open & (own > 0);
+        chosen.entry = takes ? finiteCount_ + i : chosen.entry;
+        importance = takes ? own : importance;
+        open &= !(takes & (rest < own));
+        rest -= takes ? own : 0.0f;
+    }
+    chosen.probability = importance > 0 ? share * importance / elsewhere : 0.0f;
+    return chosen;
+}
 
 template <class Weight>
 Vec3 Lights::escaped(const Vec3& direction, float time, bool cameraRay, const LightReceiver* receiver,

@@ -19,8 +19,8 @@ struct BatchRay {
     bool fromCamera = false;  ///< as Ray::fromCamera
 };
 
-/// Embree's ray. The numbers move as whole vectors: Embree reads them as such, and would wait for ones that were written
-/// one by one.
+/// Embree's ray. The numbers move as whole vectors: Embree reads them as such, and would wait for ones that were
+/// written one by one.
 inline void toEmbree(const BatchRay& r, RTCRay& ray) {
     constexpr size_t kAlike = offsetof(RTCRay, mask);
     static_assert(offsetof(BatchRay, tmin) == offsetof(RTCRay, tnear) &&

@@ -1,43 +1,17 @@
 // Choosing lights and points of lights: what is drawn agrees with the density that is told.
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <numeric>
 
-#include "base/isa.h"
-#include "math/hash.h"
 #include "math/warp.h"
-#include "support/transport_scene.h"
-#include "trace/light_lanes.h"
+#include "support/light_scene.h"
 #include "trace/spherical_rectangle.h"
 #include "trace/surface.h"
-#include "trace/trace_scene.h"
 
 namespace lumi {
 namespace {
 
 using namespace test;
-
-/// Plain random numbers by counting.
-class Numbers {
-public:
-    explicit Numbers(uint32_t seed) : seed_(seed) {}
-    float one() { return unitFloat(hashCombine(seed_, count_++)); }
-    Vec2 two() {
-        const float a = one();
-        return {a, one()};
-    }
-
-private:
-    uint32_t seed_, count_ = 0;
-};
-
-void bindTo(TraceScene& scene, std::shared_ptr<const PosedScene> posed) {
-    scene.posed = std::move(posed);
-    scene.embree.bind(*scene.posed);
-    scene.tables = makeSceneTables(*scene.posed, scene.embree);
-    scene.lights.build(*scene.posed, scene.tables);
-}
 
 TEST(AliasTable, DrawsInProportionToWeights) {
     const std::vector<float> weights{0, 1, 5, 0.25f, 0, 2, 1e-3f, 3};
@@ -96,31 +70,6 @@ TEST(SphericalRectangle, SolidAngleAndUniformity) {
                 count * (1.1 * 0.9 / (n * n) * 0.8 / (d2 * std::sqrt(d2))) / expected;
         }
     EXPECT_GT(chiSquareTest(observed, wanted), 1e-3);
-}
-
-/// Emissive triangles of three instances, one mirrored, one shared; a lamp of each kind.
-TinyScene manyLights() {
-    TinyScene tiny;
-    Material glow = lambert(0);
-    glow.emission = Vec3(2);
-    const int material = tiny.addMaterial(glow);
-    const auto ball = std::make_shared<const Mesh>(facetedSphere(0.4f, 12));
-    tiny.add(ball, material, translation(Vec3(-2, 0, 0)));
-    tiny.add(ball, material, translation(Vec3(0, 0, -2)) * scaling(Vec3(-1, 0.5f, 1.5f)));
-    glow.clearcoat = 0.9f;
-    tiny.add(facetedSphere(0.2f, 6), glow, translation(Vec3(1.2f, -1.2f, 0.8f)));
-    Light light;
-    light.type = LightType::Rectangle;
-    tiny.addLight(light, lookAt(Vec3(2, 0.5f, 0), Vec3(0)));
-    light.type = LightType::Sphere;
-    light.radius = 0.4f;
-    tiny.addLight(light, translation(Vec3(0, 2, 0)));
-    light.type = LightType::Disk;
-    tiny.addLight(light, lookAt(Vec3(0, 0, 2), Vec3(0)));
-    light.type = LightType::Point;
-    tiny.addLight(light, translation(Vec3(0.3f, -0.5f, 0.2f)));
-    tiny.scene.environment.constant = Vec3(0.2f);
-    return tiny;
 }
 
 /// Every way in which a light is chosen, and every way in which a point may face.
@@ -269,82 +218,6 @@ TEST(Lights, EmissionPassesTheVarnishOverIt) {
              {evaluateSurface(scene.tables, point, wo, 0.1f).emitted, triangleEmission(scene.tables, point, wo)})
             EXPECT_LT(glm::distance(found, glow.emission * expected), 1e-5f) << cosine;
     }
-}
-
-void expectNear(const Vec3& a, const Vec3& b, float tolerance, size_t lane) {
-    EXPECT_LT(maxComponent(glm::abs(a - b)), tolerance * (1 + maxComponent(glm::abs(b)))) << lane;
-}
-
-/// Batches are sampled by kernels, lane by lane what samplePoint() gives: every kind of light, each side of triangles.
-/// And the same bytes on every instruction set.
-TEST(Lights, LanesSampleAsOneByOne) {
-    TinyScene tiny = manyLights();
-    Material glow = lambert(0);
-    glow.emission = Vec3(1, 2, 3);
-    glow.doubleSided = false;
-    tiny.add(facetedSphere(0.5f, 8), glow, translation(Vec3(2, 2, 2)));
-    Light spot;
-    spot.type = LightType::Spot;
-    spot.range = 6;
-    tiny.addLight(spot, lookAt(Vec3(1, 2, 1), Vec3(0)));
-    auto sky = std::make_shared<Image>(Extent2{16, 8}, 3);
-    for (size_t i = 0; i < sky->size(); ++i) sky->data()[i] = 0.1f + static_cast<float>(i * 7 % 13);
-    tiny.scene.environment.image = sky;
-    tiny.scene.environment.rotateDeg = 40;
-    TraceScene scene;
-    bindTo(scene, tiny.pose());
-
-    const auto lanes = std::make_unique<PlainLanes>(), plain = std::make_unique<PlainLanes>();
-    const auto lights = std::make_unique<LightLanes>();
-    std::vector<LightReceiver> receivers(PlainLanes::kMost);
-    std::vector<Lights::Choice> choices(PlainLanes::kMost);
-    Numbers numbers(11);
-    size_t reached = 0;
-    for (uint32_t first = 0; first < scene.lights.count(); first += PlainLanes::kMost) {
-        lanes->count = PlainLanes::kMost;
-        for (uint32_t i = 0; i < PlainLanes::kMost; ++i) {
-            const Vec3 place = (Vec3(numbers.one(), numbers.one(), numbers.one()) - Vec3(0.5f)) * 6.0f;
-            receivers[i] = {place, sampleSphere(numbers.two()), 0, LightReceiver::Facing::Front, LightSampling::Tree};
-            // The last entries are those without a triangle.
-            const uint32_t entry =
-                i % 2 == 0 ? first + i : static_cast<uint32_t>(scene.lights.count()) - 1 - i % 15 / 2;
-            choices[i] = {entry % static_cast<uint32_t>(scene.lights.count()), 0.3f};
-            lanes->position.set(static_cast<int>(i), place);
-            lanes->lightPointX[i] = numbers.one(), lanes->lightPointY[i] = numbers.one();
-        }
-        const Isa best = activeIsa();
-        for (const Isa isa : {Isa::Baseline, Isa::V3, Isa::V4}) {
-            if (isa > best) continue;
-            setIsa(isa);
-            scene.lights.samplePoints(choices, receivers, *lights, *lanes);
-            if (isa == Isa::Baseline) *plain = *lanes;
-            EXPECT_EQ(std::memcmp(lanes.get(), plain.get(), sizeof(PlainLanes)), 0) << isaName(isa);
-        }
-        for (size_t i = 0; i < PlainLanes::kMost; ++i) {
-            LightSample one;
-            const int lane = static_cast<int>(i);
-            const bool some =
-                scene.lights.samplePoint(choices[i], receivers[i], {lanes->lightPointX[i], lanes->lightPointY[i]}, one);
-            ASSERT_EQ(lanes->lightPdf[i] > 0, some) << i;
-            if (!some) continue;
-            ++reached;
-            EXPECT_NEAR(lanes->lightPdf[i] / one.pdf, 1, 1e-4) << i;
-            expectNear(lanes->lightDirection.get<Vec3>(lane), one.direction, 1e-5f, i);
-            expectNear(lights->position.get<Vec3>(lane), one.position, 1e-5f, i);
-            expectNear(lanes->lightRadiance.get<Vec3>(lane), one.sky ? Vec3(1) : one.radiance, 1e-4f, i);
-            EXPECT_EQ(lanes->lightWeighs[i] > 0, one.hittable) << i;
-            EXPECT_EQ(scene.lights.isSky(choices[i].entry), one.sky) << i;
-            if (one.sky) {
-                EXPECT_NEAR(lights->skyU[i], one.skyPlace.x, 1e-5) << i;
-                EXPECT_NEAR(lights->skyV[i], one.skyPlace.y, 1e-5) << i;
-                EXPECT_EQ(lanes->lightDistance[i], kInfinity) << i;
-            } else {
-                EXPECT_NEAR(lanes->lightDistance[i] / one.distance, 1, 1e-5) << i;
-                expectNear(lanes->lightTarget.get<Vec3>(lane), one.target, 1e-5f, i);
-            }
-        }
-    }
-    EXPECT_GT(reached, scene.lights.count() / 2);
 }
 
 TEST(Lights, NoneIsEmpty) {
