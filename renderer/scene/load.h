@@ -19,9 +19,9 @@ class ParameterVisitor;
 using LoadProgress = std::function<void(float fraction, const std::string& step)>;
 
 /// How an OBJ is subdivided.
-enum class SubdivisionScheme { Auto, None, CatmullClark };
+enum class SubdivisionScheme { Auto, None, CatmullClark, Bilinear };
 struct Subdivision {
-    SubdivisionScheme scheme = SubdivisionScheme::Auto;  ///< Auto: where the file has OpenSubdiv's tags
+    SubdivisionScheme scheme = SubdivisionScheme::Auto;  ///< Auto: what the file says
     int rate = 8;                                        ///< segments along every edge of the cage
     void describe(ParameterVisitor& v);
 };

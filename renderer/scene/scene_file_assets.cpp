@@ -147,9 +147,10 @@ void buildGenerated(SceneFileContext& context, const std::vector<AssetSource*>& 
 void Subdivision::describe(ParameterVisitor& v) {
     v.choice("subdivision", scheme,
              {.label = "Subdivision",
-              .options = {"auto", "none", "catmull-clark"},
-              .help = "Whether the OBJ is a control cage of a smooth surface; auto: where it has "
-                      "OpenSubdiv's tags (t or #t lines).",
+              .options = {"auto", "none", "catmull-clark", "bilinear"},
+              .help = "Of what surface the OBJ is the control cage; auto: as a comment \"# scheme: catmark\" or "
+                      "\"# scheme: bilinear\" says, else of Catmull-Clark's where it has OpenSubdiv's tags "
+                      "(t or #t lines).",
               .redo = Redo::Build});
     v.when(scheme != SubdivisionScheme::None, [&] {
         v.integer("rate", rate,

@@ -8,8 +8,9 @@
 
 namespace lumi {
 
-/// A Catmull-Clark control cage: polygons of any size over shared vertices, with OpenSubdiv's tags.
+/// A control cage: polygons of any size over shared vertices, with OpenSubdiv's tags.
 struct SubdivisionCage {
+    enum class Scheme : uint8_t { CatmullClark, Bilinear };
     enum class Boundary : uint8_t { None, EdgeOnly, EdgeAndCorner };
     enum class FaceVarying : uint8_t { Smooth, CornersOnly, CornersPlus1, CornersPlus2, Boundaries, Linear };
     struct Crease {
@@ -32,6 +33,7 @@ struct SubdivisionCage {
     std::vector<Crease> creases;
     std::vector<Corner> corners;
     std::vector<uint32_t> holes;  ///< faces that are not drawn
+    Scheme scheme = Scheme::CatmullClark;
     Boundary boundary = Boundary::EdgeAndCorner;
     FaceVarying faceVarying = FaceVarying::CornersOnly;
     bool chaikin = false;          ///< crease sharpness by Chaikin's rule

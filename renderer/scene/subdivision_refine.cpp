@@ -138,6 +138,7 @@ RefinedCage refineOnce(const SubdivisionCage& cage, const std::string& where) {
     RefinedCage out;
     out.cage.name = cage.name;
     out.cage.material = cage.material;
+    out.cage.scheme = cage.scheme;
     out.cage.faceVarying = cage.faceVarying;
     out.cage.chaikin = cage.chaikin;
     using Boundary = SubdivisionCage::Boundary;

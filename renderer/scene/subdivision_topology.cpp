@@ -124,8 +124,10 @@ std::unique_ptr<Far::TopologyRefiner> makeRefiner(const SubdivisionCage& cage, c
         topology.fvarChannels = &channel;
     }
     using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
+    const Sdc::SchemeType scheme =
+        cage.scheme == SubdivisionCage::Scheme::Bilinear ? Sdc::SCHEME_BILINEAR : Sdc::SCHEME_CATMARK;
     std::unique_ptr<Far::TopologyRefiner> refiner(
-        Factory::Create(topology, Factory::Options(Sdc::SCHEME_CATMARK, schemeOptions(cage))));
+        Factory::Create(topology, Factory::Options(scheme, schemeOptions(cage))));
     if (!refiner) throwBadInput({"the cage's topology cannot be subdivided", where, "", ""});
     return refiner;
 }

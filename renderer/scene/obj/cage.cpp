@@ -130,6 +130,21 @@ void uncommentTags(std::string& text) {
     }
 }
 
+std::optional<SubdivisionCage::Scheme> saidScheme(std::string_view text) {
+    using Scheme = SubdivisionCage::Scheme;
+    constexpr std::string_view kMark = "# scheme: ";
+    constexpr std::pair<std::string_view, Scheme> kNames[] = {{"catmark", Scheme::CatmullClark},
+                                                              {"bilinear", Scheme::Bilinear}};
+    for (size_t at = text.find(kMark); at != text.npos; at = text.find(kMark, at + 1)) {
+        if (at > 0 && text[at - 1] != '\n') continue;
+        const std::string_view rest = text.substr(at + kMark.size());
+        const std::string_view name = rest.substr(0, rest.find_first_of(" \t\r\n;,"));
+        for (const auto& [known, scheme] : kNames)
+            if (name == known) return scheme;
+    }
+    return std::nullopt;
+}
+
 bool hasTags(const std::vector<tinyobj::shape_t>& shapes) {
     return std::any_of(shapes.begin(), shapes.end(), [](const tinyobj::shape_t& shape) {
         return std::any_of(shape.mesh.tags.begin(), shape.mesh.tags.end(),
@@ -146,10 +161,11 @@ void warnOfOtherTags(const std::vector<tinyobj::shape_t>& shapes, FileWarnings& 
 }
 
 SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<tinyobj::shape_t>& shapes,
-                       uint32_t fallbackMaterial, FileWarnings& warnings) {
+                       SubdivisionCage::Scheme scheme, uint32_t fallbackMaterial, FileWarnings& warnings) {
     const std::string& where = warnings.file();
     SubdivisionCage cage;
     cage.name = where;
+    cage.scheme = scheme;
     cage.boundary = SubdivisionCage::Boundary::EdgeOnly;
     for (size_t i = 0; i + 2 < attributes.vertices.size(); i += 3)
         cage.positions.emplace_back(attributes.vertices[i], attributes.vertices[i + 1], attributes.vertices[i + 2]);
@@ -158,6 +174,8 @@ SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<ti
         for (const Tag& tag : shape.mesh.tags)
             if (isApplied(tag)) knownTag(tag.name)->apply(tag, cage);
     }
+    // Bilinear surfaces end where their cage ends, whatever the tags say.
+    if (scheme == SubdivisionCage::Scheme::Bilinear) cage.boundary = SubdivisionCage::Boundary::EdgeAndCorner;
     warnOfOtherTags(shapes, warnings);
     if (cage.faceSizes.empty()) throwBadInput({"holds no faces", where, "a polygon cage", ""});
     cage.material = cage.faceMaterials.front();
@@ -175,13 +193,14 @@ SubdivisionCage parseCage(std::string text, const std::string& where, MessageLog
     FileWarnings warnings(where, log);
     checkObjNumbers(text, warnings);
     uncommentTags(text);
+    const auto scheme = saidScheme(text).value_or(SubdivisionCage::Scheme::CatmullClark);
     tinyobj::ObjReaderConfig config;
     config.triangulate = false;
     config.vertex_color = false;
     tinyobj::ObjReader reader;
     if (!reader.ParseFromString(text, "", config))
         throwBadInput({"is not a readable OBJ file", where, "", reader.Error().substr(0, reader.Error().find('\n'))});
-    SubdivisionCage cage = cageOf(reader.GetAttrib(), reader.GetShapes(), 0, warnings);
+    SubdivisionCage cage = cageOf(reader.GetAttrib(), reader.GetShapes(), scheme, 0, warnings);
     warnings.tellOfMore();
     return cage;
 }

@@ -3,6 +3,7 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
 
 #include "base/error.h"
@@ -56,6 +57,7 @@ struct ParsedObj {
     tinyobj::attrib_t attributes;
     std::vector<tinyobj::shape_t> shapes;
     std::vector<tinyobj::material_t> materials;
+    std::optional<SubdivisionCage::Scheme> scheme;  ///< that it says
     uint64_t digest = 0;
 };
 
@@ -69,6 +71,7 @@ ParsedObj parse(const std::filesystem::path& path, FileWarnings& warnings) {
     std::string lines(bytes.begin(), bytes.end());
     bytes = {};
     uncommentTags(lines);
+    parsed.scheme = saidScheme(lines);
     std::istringstream text(std::move(lines));
     FolderMaterials materials(path.parent_path(), warnings, parsed.digest);
     std::string warning, error;
@@ -91,17 +94,22 @@ ParsedObj parse(const std::filesystem::path& path, FileWarnings& warnings) {
     return parsed;
 }
 
-/// All shapes as the limit surface of one cage, if that is asked for. Nothing where only the file's own tags ask for it
-/// and there is no limit surface.
+/// All shapes as the limit surface of one cage, if that is asked for. Nothing where only the file itself asks for it and
+/// there is no limit surface.
 std::shared_ptr<Mesh> limitSurface(const ParsedObj& parsed, const Subdivision& subdivision, uint32_t fallback,
                                    FileWarnings& warnings, const std::stop_token& stop) {
-    const bool asked = subdivision.scheme == SubdivisionScheme::CatmullClark;
-    if (!asked && (subdivision.scheme == SubdivisionScheme::None || !hasTags(parsed.shapes))) {
-        if (subdivision.scheme != SubdivisionScheme::None) warnOfOtherTags(parsed.shapes, warnings);
+    using Scheme = SubdivisionCage::Scheme;
+    if (subdivision.scheme == SubdivisionScheme::None) return nullptr;
+    const bool asked = subdivision.scheme != SubdivisionScheme::Auto;
+    if (!asked && !parsed.scheme && !hasTags(parsed.shapes)) {
+        warnOfOtherTags(parsed.shapes, warnings);
         return nullptr;
     }
+    const Scheme scheme = subdivision.scheme == SubdivisionScheme::Bilinear ? Scheme::Bilinear
+                          : asked                                           ? Scheme::CatmullClark
+                                  : parsed.scheme.value_or(Scheme::CatmullClark);
     try {
-        const SubdivisionCage cage = cageOf(parsed.attributes, parsed.shapes, fallback, warnings);
+        const SubdivisionCage cage = cageOf(parsed.attributes, parsed.shapes, scheme, fallback, warnings);
         auto mesh = std::make_shared<Mesh>(tessellate(cage, subdivision.rate, warnings.file(), stop).mesh);
         mesh->name = "surface";
         return mesh;

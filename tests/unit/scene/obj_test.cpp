@@ -258,6 +258,39 @@ TEST(ObjCage, CommentsAreNoTags) {
     EXPECT_GT(loadText(square + "#t interpolateboundary 1/0/0 1\n").triangleCount(), 2);
 }
 
+/// A saddle: of the bilinear patch over its corners, z = x y.
+const std::string kSaddle = "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nf 1 2 3 4\n";
+
+TEST(ObjCage, CommentsSayTheScheme) {
+    const Scene bilinear = loadText("# made by hand\n# scheme: bilinear; and more\n" + kSaddle);
+    const Mesh& mesh = *bilinear.instances.at(0).mesh;
+    EXPECT_GT(mesh.positions.size(), 16u);
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+        const Vec3& p = mesh.positions[v];
+        EXPECT_NEAR(p.z, p.x * p.y, 1e-6f);
+        EXPECT_LT(glm::distance(mesh.normals[v], glm::normalize(Vec3(-p.y, -p.x, 1))), 1e-5f);
+    }
+    const std::string cube =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+        "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    EXPECT_LT(loadText("# scheme: catmark\n" + cube).restBounds().upper.x, 0.95f);
+    EXPECT_EQ(loadText("# scheme: bilinear\r\n" + cube).restBounds().upper.x, 1);
+    for (const char* plain : {"# scheme: loop\n", "# the scheme: catmark\n", "# scheme\n", "# scheme: "})
+        EXPECT_EQ(loadText(cube + plain).triangleCount(), 12) << plain;
+}
+
+TEST(ObjCage, TheSceneFileHasTheLastWordOnTheScheme) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "a.obj", "# scheme: catmark\n" + kSaddle);
+    MessageLog log;
+    LoadOptions options;
+    options.subdivision.scheme = SubdivisionScheme::None;
+    EXPECT_EQ(loadObj(folder / "a.obj", log, options).triangleCount(), 2);
+    options.subdivision.scheme = SubdivisionScheme::Bilinear;
+    for (const Vec3& p : loadObj(folder / "a.obj", log, options).instances.at(0).mesh->positions)
+        EXPECT_NEAR(p.z, p.x * p.y, 1e-6f);
+}
+
 SubdivisionCage cageWith(const std::string& tags) {
     MessageLog log;
     const SubdivisionCage cage =
