@@ -29,10 +29,12 @@ FirstHitJudge* judgeOf(std::span<PathObserver* const> observers) {
 }  // namespace
 
 Integrator::Integrator(const TraceScene& scene, const PathSettings& settings, uint32_t seed,
-                       std::span<PathObserver* const> observers)
+                       std::span<PathObserver* const> observers, const MediumStack& around)
     : scene_(scene),
       settings_(settings),
       seed_(seed),
+      around_(around),
+      absorptionAround_(absorptionIn(scene.tables, around)),
       judge_(judgeOf(observers)),
       observers_(judge_ ? observers.subspan(1) : observers),
       needs_(joined(observers_)) {
@@ -70,7 +72,7 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
     batch.active.resize(count);
     batch.plain.count = 0;
     batch.nonFinite = 0;
-    batch.absorbs = false;
+    batch.absorbs = !isBlack(absorptionAround_);
     for (uint32_t i = 0; i < count; ++i) {
         const PathStart& start = starts[i];
         PathState& path = batch.paths[i];
@@ -83,6 +85,7 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
         path.stream = SampleStream(settings_.sampler, settings_.haltonLoop, seed_, start.key);
         path.hash = pathHash(start.key, seed_);
         path.slot = start.slot, path.sample = start.key.sample;
+        if (start.ray.fromCamera) path.media = around_, path.absorption = absorptionAround_;
         batch.active[i] = i;
     }
     assert(!judge_ || (firstPoints.empty() && firstHits.empty()));

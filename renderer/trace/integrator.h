@@ -23,8 +23,9 @@ namespace lumi {
 /// A FirstHitJudge among the observers, in the first place, decides what the first rays have found.
 class Integrator {
 public:
+    /// `around` are the solids that camera rays begin in.
     Integrator(const TraceScene& scene, const PathSettings& settings, uint32_t seed,
-               std::span<PathObserver* const> observers);
+               std::span<PathObserver* const> observers, const MediumStack& around);
 
     /// Traces up to PathBatch::kMost paths. With `firstPoints` the first vertices are given: start i sees
     /// firstPoints[i] from along its ray's direction. `radiance` may be empty; `coherent` says that neighbouring starts
@@ -88,6 +89,8 @@ private:
     const TraceScene& scene_;
     const PathSettings settings_;
     const uint32_t seed_;
+    const MediumStack around_;
+    const Vec3 absorptionAround_;
     FirstHitJudge* const judge_;
     const std::span<PathObserver* const> observers_;  ///< but the judge
     ObserverNeeds needs_;

@@ -36,7 +36,7 @@ struct PathState {
     int diffuseCount = 0, specularCount = 0;
     bool alive = true;
     bool diffuseBefore = false;
-    MediumStack media;  ///< the solids it is in; it begins outside of all, wherever the camera is
+    MediumStack media;  ///< the solids it is in
 };
 
 /// A light sample that waits for its shadow ray.

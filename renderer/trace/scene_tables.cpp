@@ -147,6 +147,7 @@ SceneTables makeSceneTables(const PosedScene& posed, const EmbreeScene& embree) 
     for (const Material& material : scene.materials) {
         tables.materials.push_back(makeMaterial(material));
         tables.thinWalls |= tables.materials.back().thinWall;
+        tables.absorbs |= !isBlack(tables.materials.back().absorption);
     }
     static const Material kNone;
     if (tables.materials.empty()) tables.materials.push_back(makeMaterial(kNone));

@@ -105,6 +105,7 @@ struct SceneTables {
     std::vector<BodyRecord> bodies;
     std::vector<TextureView> textures;
     bool thinWalls = false;  ///< of some material
+    bool absorbs = false;    ///< some solid
     size_t byteCount() const;
 };
 

@@ -15,6 +15,7 @@
 #include "scene/reach.h"
 #include "trace/camera_starts.h"
 #include "trace/integrator.h"
+#include "trace/media_around.h"
 #include "trace/signals_observer.h"
 #include "trace/surface.h"
 #include "trace/trace_scene.h"
@@ -94,6 +95,10 @@ struct Tracer::Impl {
         scene.tables = makeSceneTables(*scene.posed, scene.embree);
         scene.lights.build(*scene.posed, scene.tables);
     }
+    /// The solids that paths from there begin in, as far as they matter.
+    MediumStack aroundCamera(const Vec3& place, float time) const {
+        return scene.tables.absorbs ? mediaAround(scene, place, time) : MediumStack();
+    }
     void add(const TraceCounts& counts) {
         cameraRays.fetch_add(counts.cameraRays, std::memory_order_relaxed);
         bounceRays.fetch_add(counts.bounceRays, std::memory_order_relaxed);
@@ -157,7 +162,8 @@ bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_t
     observers.insert(observers.end(), extra.begin(), extra.end());
     PathSettings path = sampling.path;
     if (extra.empty() && isGeometryOnly(signals.available())) path.maxDepth = 0;  // no light is asked for
-    const Integrator integrator(impl_->scene, path, sampling.seed, observers);
+    const Integrator integrator(impl_->scene, path, sampling.seed, observers,
+                                impl_->aroundCamera(sampling.camera.position(), 0));
 
     static_assert(SignalsObserver::kTile * SignalsObserver::kTile <= PathBatch::kMost &&
                   SignalsObserver::kTile <= kMostInStartRow);
@@ -192,7 +198,11 @@ bool Tracer::Impl::traceBatches(std::span<const PathStart> starts, std::span<con
                                 const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
                                 std::span<PathObserver* const> observers, const std::stop_token& stop,
                                 std::span<const Hit> firstHits) {
-    const Integrator integrator(scene, settings, seed, observers);
+    // Cameras are small beside the solids that they are in: the first ray speaks for all.
+    const bool fromCamera = !starts.empty() && starts.front().ray.fromCamera;
+    const MediumStack around =
+        fromCamera ? aroundCamera(starts.front().ray.origin, starts.front().ray.time) : MediumStack();
+    const Integrator integrator(scene, settings, seed, observers, around);
     const auto count = static_cast<int64_t>(starts.size());
     std::atomic<int64_t> done{0};
     // A block ends where its last slot ends, so that no slot is in two batches at a time.

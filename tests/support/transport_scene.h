@@ -130,11 +130,12 @@ struct Estimate {
 
 /// Mean over `count` independent paths of the green radiance along one ray.
 inline Estimate radianceAlong(Tracer& tracer, const Vec3& origin, const Vec3& direction, int count,
-                              const PathSettings& path, uint32_t seed = 1) {
+                              const PathSettings& path, uint32_t seed = 1, bool fromCamera = false) {
     std::vector<PathStart> starts(static_cast<size_t>(count));
     for (size_t i = 0; i < starts.size(); ++i) {
         starts[i].ray.origin = origin;
         starts[i].ray.direction = glm::normalize(direction);
+        starts[i].ray.fromCamera = fromCamera;
         starts[i].key = {7, 11, static_cast<uint32_t>(i)};
         starts[i].slot = static_cast<uint32_t>(i);
     }
