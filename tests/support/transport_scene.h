@@ -32,6 +32,15 @@ inline Material metal(float reflectance, float roughness) {
 /// One rectangle of `size` around the origin in the xz plane, facing +Y.
 inline Mesh floorMesh(float size = 20) { return rectangleMesh(size, size, Facing::Y); }
 
+inline Material glass(float roughness) {
+    Material m;
+    m.transmission = 1;
+    m.thickness = 1;
+    m.roughness = roughness;
+    m.ior = 1.5f;
+    return m;
+}
+
 /// A sphere without smooth normals, so that its geometry is all there is.
 inline Mesh facetedSphere(float radius, int segments = 32) {
     Mesh mesh = sphereMesh(radius, segments, segments / 2);

@@ -94,8 +94,8 @@ ParsedObj parse(const std::filesystem::path& path, FileWarnings& warnings) {
     return parsed;
 }
 
-/// All shapes as the limit surface of one cage, if that is asked for. Nothing where only the file itself asks for it and
-/// there is no limit surface.
+/// All shapes as the limit surface of one cage, if that is asked for. Nothing where only the file itself asks for it
+/// and there is no limit surface.
 std::shared_ptr<Mesh> limitSurface(const ParsedObj& parsed, const Subdivision& subdivision, uint32_t fallback,
                                    FileWarnings& warnings, const std::stop_token& stop) {
     using Scheme = SubdivisionCage::Scheme;

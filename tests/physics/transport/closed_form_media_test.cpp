@@ -1,9 +1,8 @@
-// Furnaces, glass, absorption and transparency, against closed forms.
+// Furnaces, glass and transparency, against closed forms.
 #include <gtest/gtest.h>
 
 #include "support/transport_scene.h"
 #include "trace/bsdf.h"
-#include "trace/medium_stack.h"
 #include "trace/surface.h"
 #include "trace/trace_scene.h"
 
@@ -149,15 +148,6 @@ TEST(Furnace, DepthCutsTheSeries) {
     }
 }
 
-Material glass(float roughness) {
-    Material m;
-    m.transmission = 1;
-    m.thickness = 1;
-    m.roughness = roughness;
-    m.ior = 1.5f;
-    return m;
-}
-
 TEST(Furnace, GlassSphereIsInvisible) {
     // What facets scatter more than once is given back but for the tables' margin of 0.0015 a meeting inside; at a mean
     // internal reflectance of 0.6 a path has two and a half of these.
@@ -170,104 +160,6 @@ TEST(Furnace, GlassSphereIsInvisible) {
         tracer.bind(tiny.pose());
         const Estimate e = radianceAlong(tracer, Vec3(0.3f, 0.2f, 4), Vec3(-0.02f, 0.03f, -1), 20000, plainPaths(64));
         EXPECT_NEAR(e.mean, 1, tolerance + 3 * e.standardError) << "roughness " << roughness;
-    }
-}
-
-TEST(Absorption, SlabFollowsBeerLambert) {
-    // Straight through a slab with reflections back and forth: R + (1-R)^2 A / (1 - R A), sky 1 on all sides.
-    TinyScene tiny;
-    Material slab = glass(0);
-    slab.attenuationColor = Vec3(0.25f);
-    slab.attenuationDistance = 0.5f;
-    tiny.add(boxMesh(Vec3(4, 1, 4)), slab);
-    tiny.scene.environment.constant = Vec3(1);
-    Tracer tracer;
-    tracer.bind(tiny.pose());
-    const double r = 0.04, a = std::pow(0.25, 2.0);
-    const double expected = r + (1 - r) * (1 - r) * a / (1 - r * a);
-    const Estimate e = radianceAlong(tracer, Vec3(0.2f, 3, 0.1f), Vec3(0, -1, 0), 60000, plainPaths(32));
-    EXPECT_NEAR(e.mean, expected, kMostSigmas * e.standardError + 1e-3 * expected);
-}
-
-// A clear cube in the middle of an absorbing one, which goes on behind it.
-TEST(Absorption, GoesOnBehindASolidInside) {
-    TinyScene tiny;
-    Material drink = glass(0);
-    drink.ior = 1.0001f;
-    drink.attenuationColor = Vec3(0.25f);
-    drink.attenuationDistance = 0.5f;
-    Material ice = glass(0);
-    ice.ior = 1.0001f;
-    tiny.add(boxMesh(Vec3(4, 1, 4)), drink);
-    tiny.add(boxMesh(Vec3(1, 0.5f, 1)), ice);
-    tiny.scene.environment.constant = Vec3(1);
-    Tracer tracer;
-    tracer.bind(tiny.pose());
-    const double expected = 0.25;  // half a metre of it
-    const Estimate e = radianceAlong(tracer, Vec3(0.2f, 3, 0.1f), Vec3(0, -1, 0), 20000, plainPaths(8));
-    EXPECT_NEAR(e.mean, expected, kMostSigmas * e.standardError + 2e-3 * expected);
-}
-
-Estimate seenFromInside(TinyScene& tiny, const Vec3& eye, const Vec3& direction) {
-    tiny.scene.environment.constant = Vec3(1);
-    Tracer tracer;
-    tracer.bind(tiny.pose());
-    return radianceAlong(tracer, eye, direction, 20000, plainPaths(8), 1, /*fromCamera=*/true);
-}
-
-Material tinted() {
-    Material drink = glass(0);
-    drink.ior = 1.0001f;
-    drink.attenuationColor = Vec3(0.25f);
-    drink.attenuationDistance = 0.5f;
-    return drink;
-}
-
-void expectSeen(const Estimate& e, double expected) {
-    EXPECT_NEAR(e.mean, expected, kMostSigmas * e.standardError + 2e-3 * expected);
-}
-
-TEST(Absorption, BeginsWhereTheCameraIs) {
-    Material ice = glass(0);
-    ice.ior = 1.0001f;
-    const Vec3 eye(0.1f, -0.25f, 0.2f), up(0, 1, 0);
-    TinyScene inside;
-    inside.add(boxMesh(Vec3(4, 1, 4)), tinted());
-    expectSeen(seenFromInside(inside, eye, up), std::pow(0.25, 1.5));        // 75 cm of it
-    expectSeen(seenFromInside(inside, Vec3(0, 0.6f, 0), up), 1);             // above it
-    expectSeen(seenFromInside(inside, Vec3(0, -0.6f, 0), up), 0.25 * 0.25);  // below it
-    TinyScene inIce;
-    inIce.add(boxMesh(Vec3(4, 1, 4)), tinted());
-    inIce.add(boxMesh(Vec3(1)), ice, translation(Vec3(0)) * scaling(Vec3(0.75f)));
-    expectSeen(seenFromInside(inIce, eye, up), std::pow(0.25, 0.25));  // the last 12.5 cm
-    // Water that is a surface over an open basin; without the basin nothing is under it.
-    TinyScene pool;
-    pool.add(floorMesh(4), tinted(), translation(Vec3(0, 1, 0)));
-    expectSeen(seenFromInside(pool, Vec3(0.1f, 0, 0.1f), up), 1);
-    pool.add(floorMesh(4), lambert(0), translation(Vec3(0, -1, 0)));
-    pool.add(rectangleMesh(4, 2, Facing::X), lambert(0), translation(Vec3(2, 0, 0)));
-    pool.add(rectangleMesh(4, 2, Facing::X), lambert(0), translation(Vec3(-2, 0, 0)));
-    pool.add(rectangleMesh(4, 2, Facing::Z), lambert(0), translation(Vec3(0, 0, 2)));
-    pool.add(rectangleMesh(4, 2, Facing::Z), lambert(0), translation(Vec3(0, 0, -2)));
-    expectSeen(seenFromInside(pool, Vec3(0.1f, 0, 0.1f), up), 0.25 * 0.25);
-}
-
-TEST(Absorption, SolidsAreLeftInAnyOrder) {
-    MediumStack media;
-    EXPECT_EQ(media.innermost(), MediumStack::kNone);
-    media.leave(7);
-    EXPECT_EQ(media.innermost(), MediumStack::kNone) << "a solid that the path never entered";
-    for (const uint32_t material : {1u, 2u, 3u}) media.enter(material);
-    media.leave(2);
-    EXPECT_EQ(media.innermost(), 3u);
-    media.leave(3);
-    EXPECT_EQ(media.innermost(), 1u);
-    media.leave(1);
-    EXPECT_EQ(media.innermost(), MediumStack::kNone);
-    for (uint32_t material = 1; material <= 6; ++material) media.enter(material);
-    for (uint32_t material = 6; material > 2; --material) {
-        EXPECT_EQ(media.innermost(), material);
-        media.leave(material);
     }
 }
 
