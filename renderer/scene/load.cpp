@@ -10,6 +10,7 @@
 #include "scene/light_body.h"
 #include "scene/obj/load_obj.h"
 #include "scene/posed_scene.h"
+#include "scene/reach.h"
 #include "scene/scene_file.h"
 
 namespace lumi {
@@ -84,6 +85,7 @@ std::shared_ptr<const Scene> loadScene(const fs::path& path, MessageLog& log, co
     addLightBodies(*scene);
     // What cannot be posed is not taken over.
     warnOfStretchedLights(*poseScene(scene, {}, nullptr, options.stop), log);
+    warnOfDistance(*scene, log);
     addDefaults(*scene, log, !ours, options.stop);
     if (options.progress) options.progress(1, "done");
     return scene;

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <vector>
 
 #include "base/error.h"
+#include "base/messages.h"
 #include "base/parallel.h"
 #include "scene/bounds.h"
 #include "scene/posed_scene.h"
@@ -125,6 +127,19 @@ void requireReach(const CameraPose& camera, const std::string& where) {
     fault.look(camera.halfHeight * std::max(1.0f, static_cast<float>(camera.extent.width) / height));
     fault.look(camera.focus);
     if (fault.found) refuse("the camera is too far or sees too much", fault, where);
+}
+
+void warnOfDistance(const Scene& scene, MessageLog& log) {
+    constexpr float kMostOfSize = 0.005f;
+    const Bounds3 box = scene.restBounds();
+    if (box.empty()) return;
+    const float distance = std::max(maxComponent(-box.lower), maxComponent(box.upper));
+    const float start = 256 * (std::nextafter(distance, kInfinity) - distance);
+    if (start <= kMostOfSize * box.radius()) return;
+    log.warning(
+        fmt::format("{}: lies {:.3g} m from the origin, where numbers are so coarse that rays may start {:.2g} m "
+                    "off surfaces, which loses shadows and light in corners; move it to the origin",
+                    std::filesystem::path(scene.path).filename().string(), distance, start));
 }
 
 }  // namespace lumi

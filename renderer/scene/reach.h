@@ -7,7 +7,9 @@
 
 namespace lumi {
 
+class MessageLog;
 class PosedScene;
+struct Scene;
 
 /// How far from the origin anything may be along each axis, metres; matrices hold no larger numbers either. Distances
 /// between such things, their squares and the squares of areas all fit a float, and rays stay far below the 1.8e18 that
@@ -34,5 +36,9 @@ void requireReach(const PosedScene& posed, std::span<const Bounds3> bounds);
 /// The same for a camera, which may be ten times as far: its place, and the part of the world that an orthographic one
 /// sees. `where` is the scene's file.
 void requireReach(const CameraPose& camera, const std::string& where);
+
+/// Warns of a scene at rest that lies where floats are coarse beside its size: rays start up to 256 units in the last
+/// place off surfaces [Waechter & Binder 2019].
+void warnOfDistance(const Scene& scene, MessageLog& log);
 
 }  // namespace lumi

@@ -98,6 +98,27 @@ TEST(LoadScene, StretchedSphereLightsAreNamed) {
     EXPECT_TRUE(warningsOf(R"("disk": {"radius": 0.5})", "[3, 1, 1]").empty()) << "shown as the ellipse that it is";
 }
 
+TEST(LoadScene, ScenesWhereNumbersAreCoarseAreNamed) {
+    TemporaryFolder folder;
+    const auto warningsAt = [&](const char* distance, const char* size) {
+        writeFileAtomically(folder / "far.json",
+                            std::string(R"({"version": 1, "assets": {"b": {"box": {"size": [)") + size + ", 1, 1" +
+                                R"(]}}}, "instances": [{"name": "b", "asset": "b", "translate": [)" + distance +
+                                R"(, 0, 0]}], "environment": {"constant": [1, 1, 1]},
+                                "cameras": {"main": {"eye": [0, 0, 4], "look-at": [0, 0, 0]}}})");
+        MessageLog log;
+        loadScene(folder / "far.json", log);
+        return log.warnings();
+    };
+    EXPECT_TRUE(warningsAt("0", "1").empty());
+    EXPECT_TRUE(warningsAt("20", "1").empty());
+    EXPECT_TRUE(warningsAt("-5000", "10000").empty()) << "coarse, but beside its size it is not";
+    const std::vector<std::string> told = warningsAt("-100000", "1");
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told[0].find("far.json: lies 1e+05 m from the origin"), 0u) << told[0];
+    EXPECT_NE(told[0].find("start 2 m off"), std::string::npos) << told[0];
+}
+
 TEST(LoadScene, OurOwnFilesStayDarkButGetACamera) {
     TemporaryFolder folder;
     writeFileAtomically(
