@@ -196,8 +196,9 @@ float EnvironmentLight::irradiance(const Vec3& normal) const {
     return sum * scale_;
 }
 
-SkyCube EnvironmentLight::cube() const {
+SkyCube EnvironmentLight::cube(float least) const {
     SkyCube cube;
+    cube.least = least;
     for (size_t side = 0; side < 6; ++side) cube.side[side] = image_ ? ambient_[side] * scale_ : kPi * meanLuminance_;
     cube.cosine = cos_, cube.sine = sin_;
     return cube;

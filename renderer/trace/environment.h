@@ -44,8 +44,8 @@ public:
     /// About the luminance of the irradiance on a plane with unit world normal `normal`, W/m^2: exact along the image's
     /// axes, squares of the normal's components between them ["ambient cube", Mitchell et al. 2006].
     float irradiance(const Vec3& normal) const;
-    /// What irradiance() reads; `least` is left to the caller.
-    SkyCube cube() const;
+    /// What irradiance() reads, for a sky that counts at least as `least`.
+    SkyCube cube(float least) const;
     size_t byteCount() const {
         return (rowCdf_.size() + columnCdf_.size()) * sizeof(float) + texels_.size() * sizeof(Vec3) +
                (rowGuide_.size() + columnGuide_.size()) * sizeof(uint16_t);

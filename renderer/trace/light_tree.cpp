@@ -260,6 +260,7 @@ void LightTree::build(std::span<const LightBounds> bounds) {
     rankLights(lights, builder.takeOrder());
     findWays();
     findGroups();
+    findFew();
 }
 
 void LightTree::rankLights(std::span<const LightBounds> lights, std::span<const uint32_t> order) {
@@ -324,6 +325,18 @@ void LightTree::findGroups() {
             ranges[n].begin = std::min(ranges[n].begin, group.begin);
             ranges[n].end = std::max(ranges[n].end, group.end);
         }
+}
+
+void LightTree::findFew() {
+    few_ = 0;
+    for (int c = 0; c < kWidth; ++c) {
+        if (!(nodes_[0].intensity[c] > 0)) continue;
+        if (!(nodes_[0].child[c] & LightTreeNode::kLight) || c >= LightTreeView::kFew) {
+            few_ = 0;
+            return;
+        }
+        few_ = c + 1;
+    }
 }
 
 size_t LightTree::byteCount() const {

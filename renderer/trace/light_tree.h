@@ -23,9 +23,8 @@ public:
               LightTreeChoice* choices, int count) const {
         kernels_->pick(view(), points, elsewhere, u, v, choices, count);
     }
-    LightTreeChoice pick(const LightTreePoint& point, float elsewhere, Vec2 u) const {
+    LightTreeChoice pick(const LightTreePoint& p, float elsewhere, Vec2 u) const {
         LightTreeChoice choice;
-        const LightTreePoint& p = point;
         pick({&p.x, &p.y, &p.z, &p.normalX, &p.normalY, &p.normalZ, p.facing}, &elsewhere, &u.x, &u.y, &choice, 1);
         return choice;
     }
@@ -42,16 +41,18 @@ public:
     size_t byteCount() const;
 
 private:
-    LightTreeView view() const { return {nodes_.data(), groups_.data(), ranks_.data()}; }
+    LightTreeView view() const { return {nodes_.data(), groups_.data(), ranks_.data(), few_}; }
     void rankLights(std::span<const LightBounds> lights, std::span<const uint32_t> order);
     void findWays();
     void findGroups();
+    void findFew();
 
     const LightTreeKernels* kernels_ = nullptr;
     std::vector<LightTreeNode> nodes_;
     std::vector<LightTreeWay> ways_;      ///< to each light
     std::vector<LightTreeGroup> groups_;  ///< of each place
     std::vector<LightTreeRank> ranks_;
+    int few_ = 0;          ///< as LightTreeView's
     uint64_t digest_ = 0;  ///< of the bounds
 };
 

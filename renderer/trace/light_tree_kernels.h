@@ -49,6 +49,8 @@ struct LightTreeView {
     const LightTreeNode* nodes = nullptr;    ///< the root first
     const LightTreeGroup* groups = nullptr;  ///< of each place
     const LightTreeRank* ranks = nullptr;    ///< and one more, behind the last light
+    static constexpr int kFew = 4;
+    int few = 0;  ///< places of the root, if all its children are lights and there are no more than kFew; else 0
 };
 
 /// What receives light: a point, and which way it faces.
@@ -69,7 +71,7 @@ struct LightTreeChoice {
     uint32_t light = ~0u;    ///< ~0: none of the tree
     bool elsewhere = false;  ///< the choice fell on what is not in the tree
     float probability = 0;   ///< of the light, or of elsewhere
-    float u = 0;             ///< what is left of the random number
+    float u = 0;             ///< elsewhere: what is left of the random number
 };
 
 /// Choice of a light by its importance to a point: intensity times bounds of both cosines over squared distance, which

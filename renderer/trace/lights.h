@@ -150,6 +150,7 @@ private:
     Choice choose(const LightReceiver& receiver, Vec2 pick) const;
     void chooseByImportance(const PlainLanes& lanes, std::span<const LightReceiver> receivers,
                             std::span<Choice> choices) const;
+    /// What an infinite light weighs in the choice for each lane.
     void weighInfinite(uint32_t infinite, const PlainLanes& lanes, std::span<const LightReceiver> receivers,
                        float* weights) const;
     void prefetch(const Choice& choice) const;

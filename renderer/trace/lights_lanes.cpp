@@ -1,4 +1,4 @@
-// Light samples for the receivers of a batch.
+// Lights and light samples for the receivers of a batch.
 #include <algorithm>
 
 #include "trace/light_lanes.h"
@@ -9,8 +9,7 @@ namespace lumi {
 void Lights::weighInfinite(uint32_t infinite, const PlainLanes& lanes, std::span<const LightReceiver> receivers,
                            float* weights) const {
     if (infinite == suns_.size()) {
-        SkyCube cube = environment_.cube();
-        cube.least = kLeastSky * kPi * environment_.meanLuminance();
+        const SkyCube cube = environment_.cube(kLeastSky * kPi * environment_.meanLuminance());
         return lightLaneKernels().weighSky(cube, lanes, weights);
     }
     const Sun& sun = suns_[infinite];

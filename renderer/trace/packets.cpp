@@ -41,8 +41,6 @@ EmbreeScene::Context makeContext(const EmbreeScene& scene, std::span<const Batch
     return context;
 }
 
-unsigned flagsOf(const BatchRay& ray) { return ray.fromCamera ? EmbreeScene::kFromCamera : 0; }
-
 /// Is it one that Embree can follow? It asserts that no number of a ray is NaN, that places and directions do not pass
 /// 1.8e18, and that no ray begins behind its origin. Others meet nothing.
 bool isTraceable(const BatchRay& r) {
@@ -208,6 +206,7 @@ void intersectRays(const EmbreeScene& scene, std::span<const BatchRay> rays, std
     for (size_t i = 0; i < rays.size(); ++i) {
         RTCRayHit query;
         toEmbree(traceable(rays[i]), query.ray);
+        query.hit.u = query.hit.v = 0, query.hit.primID = 0;
         query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(scene.handle(), &context, &query);
         const RTCHit& found = query.hit;

@@ -19,6 +19,8 @@ struct BatchRay {
     bool fromCamera = false;  ///< as Ray::fromCamera
 };
 
+inline unsigned flagsOf(const BatchRay& ray) { return ray.fromCamera ? EmbreeScene::kFromCamera : 0; }
+
 /// Embree's ray. The numbers move as whole vectors: Embree reads them as such, and would wait for ones that were
 /// written one by one.
 inline void toEmbree(const BatchRay& r, RTCRay& ray) {
@@ -28,7 +30,7 @@ inline void toEmbree(const BatchRay& r, RTCRay& ray) {
                   offsetof(BatchRay, time) == offsetof(RTCRay, time) &&
                   offsetof(BatchRay, tmax) == offsetof(RTCRay, tfar) && offsetof(BatchRay, id) == kAlike);
     std::memcpy(static_cast<void*>(&ray), &r, kAlike);
-    ray.mask = ~0u, ray.id = r.id, ray.flags = r.fromCamera ? EmbreeScene::kFromCamera : 0;
+    ray.mask = ~0u, ray.id = r.id, ray.flags = flagsOf(r);
 }
 
 /// What Embree says of a hit; bodies of lights are named later.
