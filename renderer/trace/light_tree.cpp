@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <memory>
+#include <mutex>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "math/hash.h"
 
@@ -31,41 +35,76 @@ struct Range {
     uint32_t size() const { return end - begin; }
 };
 
+/// Nodes that many threads add, in blocks that stay where they are.
+class NodePool {
+public:
+    /// For at most `count` nodes.
+    explicit NodePool(size_t count) : blocks_(count / kBlock + 1) {}
+
+    uint32_t add() {
+        const uint32_t index = count_++;
+        Block& block = blocks_[index / kBlock];
+        std::call_once(block.made, [&] { block.nodes = std::make_unique_for_overwrite<LightTreeNode[]>(kBlock); });
+        return index;
+    }
+    LightTreeNode& operator[](uint32_t index) { return blocks_[index / kBlock].nodes[index % kBlock]; }
+    size_t size() const { return count_; }
+
+private:
+    static constexpr uint32_t kBlock = 1024;
+    struct Block {
+        std::once_flag made;
+        std::unique_ptr<LightTreeNode[]> nodes;
+    };
+    std::vector<Block> blocks_;
+    std::atomic<uint32_t> count_{0};
+};
+
 class Builder {
 public:
-    explicit Builder(std::span<const LightBounds> lights) : lights_(lights), order_(lights.size()) {
+    Builder(std::span<const LightBounds> lights, std::stop_token stop)
+        : lights_(lights), stop_(std::move(stop)), order_(lights.size()), nodes_(lights.size()) {
         for (uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
     }
 
-    /// Appends the subtree over `range` to `nodes`, its root first, which is `depth` below that of the tree.
-    void build(const Range& range, std::vector<LightTreeNode>& nodes, uint32_t depth = 0) {
+    /// Makes the subtree over `range`, whose root is `depth` below that of the tree. Returns the root.
+    uint32_t build(const Range& range, uint32_t depth = 0) {
+        if (stop_.stop_requested()) throw Error(ErrorKind::Interrupted, {"interrupted", "", "", ""});
         std::array<Range, kWidth> children;
         // Cuts by cost may be as uneven as they like until the levels that are left just suffice for even ones.
         const int count = divide(range, children, depth + levelsOf(range.size()) >= LightTreeWay::kMost);
-        const auto self = nodes.size();
-        nodes.emplace_back(emptyNode());
-        const bool together = range.size() > kAlone;
-        std::array<std::vector<LightTreeNode>, kWidth> subtrees;
-        if (together)
-            parallelFor(count, [&](int64_t i) {
-                const auto c = static_cast<size_t>(i);
-                if (children[c].size() > 1) build(children[c], subtrees[c], depth + 1);
-            });
-        for (int c = 0; c < count; ++c) {
+        const uint32_t self = nodes_.add();
+        LightTreeNode& node = nodes_[self];
+        node = emptyNode();
+        const auto buildChild = [&](int64_t i) {
+            const int c = static_cast<int>(i);
             const Range& child = children[static_cast<size_t>(c)];
-            setColumn(nodes[self], c, child.bounds);
-            if (child.size() == 1) {
-                nodes[self].child[c] = LightTreeNode::kLight | order_[child.begin];
-                continue;
-            }
-            const auto first = static_cast<uint32_t>(nodes.size());
-            nodes[self].child[c] = first;
-            if (together) append(nodes, subtrees[static_cast<size_t>(c)], first);
-            else build(child, nodes, depth + 1);
-        }
+            setColumn(node, c, child.bounds);
+            node.child[c] = child.size() == 1 ? LightTreeNode::kLight | order_[child.begin] : build(child, depth + 1);
+        };
+        if (range.size() > kAlone) parallelFor(count, buildChild);
+        else
+            for (int c = 0; c < count; ++c) buildChild(c);
+        return self;
     }
 
     std::vector<uint32_t> takeOrder() { return std::move(order_); }
+
+    /// The nodes level by level: the upper levels, which every walk down meets, lie together.
+    std::vector<LightTreeNode> takeNodes(uint32_t root) {
+        std::vector<uint32_t> sources{root};
+        std::vector<LightTreeNode> sorted;
+        sources.reserve(nodes_.size()), sorted.reserve(nodes_.size());
+        for (size_t i = 0; i < sources.size(); ++i) {
+            sorted.push_back(nodes_[sources[i]]);
+            for (uint32_t& child : sorted.back().child) {
+                if (child & LightTreeNode::kLight) continue;
+                sources.push_back(child);
+                child = static_cast<uint32_t>(sources.size() - 1);
+            }
+        }
+        return sorted;
+    }
 
     Range whole() const {
         Range range{0, static_cast<uint32_t>(order_.size()), {}};
@@ -97,14 +136,6 @@ private:
         node.bothSides[c] = b.bothSides ? 1.0f : 0.0f;
         node.intensity[c] = b.intensity;
     }
-    static void append(std::vector<LightTreeNode>& nodes, const std::vector<LightTreeNode>& subtree, uint32_t first) {
-        for (const LightTreeNode& node : subtree) {
-            nodes.push_back(node);
-            for (uint32_t& child : nodes.back().child)
-                if (!(child & LightTreeNode::kLight)) child += first;
-        }
-    }
-
     LightBounds boundsOf(uint32_t begin, uint32_t end) const {
         LightBounds bounds = lights_[order_[begin]];
         for (uint32_t i = begin + 1; i < end; ++i) bounds = unite(bounds, lights_[order_[i]]);
@@ -141,9 +172,7 @@ private:
     Range split(Range& range, bool even) {
         Bounds3 centres;
         for (uint32_t i = range.begin; i < range.end; ++i) centres.extend(lights_[order_[i]].box.centre());
-        Cut best;
-        for (int axis = 0; axis < 3 && !even; ++axis)
-            if (centres.upper[axis] > centres.lower[axis]) tryAxis(range, centres, axis, best);
+        const Cut best = even ? Cut() : bestCut(range, centres);
         const auto begin = order_.begin() + range.begin, end = order_.begin() + range.end;
         auto middle = begin;
         if (best.axis >= 0)
@@ -154,12 +183,27 @@ private:
             // In halves: asked for, or all are in one place.
             middle = begin + range.size() / 2;
             const auto at = static_cast<uint32_t>(middle - order_.begin());
-            best.left = boundsOf(range.begin, at), best.right = boundsOf(at, range.end);
+            const Range right{at, range.end, boundsOf(at, range.end)};
+            range = {range.begin, at, boundsOf(range.begin, at)};
+            return right;
         }
         const auto at = static_cast<uint32_t>(middle - order_.begin());
         const Range right{at, range.end, best.right};
         range = {range.begin, at, best.left};
         return right;
+    }
+
+    /// The cheapest of all axes, the first of equals.
+    Cut bestCut(const Range& range, const Bounds3& centres) const {
+        std::array<Cut, 3> cuts;
+        const auto tryOne = [&](int64_t axis) {
+            if (centres.upper[int(axis)] > centres.lower[int(axis)])
+                tryAxis(range, centres, static_cast<int>(axis), cuts[static_cast<size_t>(axis)]);
+        };
+        if (range.size() > kAlone) parallelFor(3, tryOne);
+        else
+            for (int axis = 0; axis < 3; ++axis) tryOne(axis);
+        return *std::min_element(cuts.begin(), cuts.end(), [](const Cut& a, const Cut& b) { return a.cost < b.cost; });
     }
 
     static int binOf(float centre, const Bounds3& centres, int axis) {
@@ -200,24 +244,10 @@ private:
     }
 
     std::span<const LightBounds> lights_;
+    const std::stop_token stop_;
     std::vector<uint32_t> order_;
+    NodePool nodes_;
 };
-
-/// The nodes level by level: the upper levels, which every walk down meets, lie together.
-std::vector<LightTreeNode> byLevels(std::span<const LightTreeNode> nodes) {
-    std::vector<uint32_t> sources{0};
-    std::vector<LightTreeNode> sorted;
-    sources.reserve(nodes.size()), sorted.reserve(nodes.size());
-    for (size_t i = 0; i < sources.size(); ++i) {
-        sorted.push_back(nodes[sources[i]]);
-        for (uint32_t& child : sorted.back().child) {
-            if (child & LightTreeNode::kLight) continue;
-            sources.push_back(child);
-            child = static_cast<uint32_t>(sources.size() - 1);
-        }
-    }
-    return sorted;
-}
 
 uint64_t digestOf(std::span<const LightBounds> bounds) {
     uint64_t digest = bounds.size();
@@ -232,32 +262,26 @@ uint64_t digestOf(std::span<const LightBounds> bounds) {
     return digest;
 }
 
-/// A light whose place is not a number shines nowhere.
-std::vector<LightBounds> sane(std::span<const LightBounds> bounds) {
-    std::vector<LightBounds> result(bounds.begin(), bounds.end());
-    for (LightBounds& b : result) {
-        const bool good = isFinite(b.box.lower) && isFinite(b.box.upper) && isFinite(b.axis) && b.intensity > 0 &&
-                          std::isfinite(b.intensity);
-        if (!good) b = LightBounds{{Vec3(0), Vec3(0)}, {0, 0, 1}, 1, 0, false, 0};
-    }
-    return result;
+/// One whose place is not a number shines nowhere.
+bool isSane(const LightBounds& b) {
+    return isFinite(b.box.lower) && isFinite(b.box.upper) && isFinite(b.axis) && b.intensity > 0 &&
+           std::isfinite(b.intensity);
 }
 
 }  // namespace
 
-void LightTree::build(std::span<const LightBounds> bounds) {
+void LightTree::build(std::vector<LightBounds> bounds, const std::stop_token& stop) {
     kernels_ = &lightTreeKernels();
     const uint64_t digest = digestOf(bounds);
     if (digest == digest_ && ways_.size() == bounds.size()) return;
     digest_ = digest;
     nodes_.clear(), ways_.clear();
     if (bounds.empty()) return;
-    const std::vector<LightBounds> lights = sane(bounds);
-    Builder builder(lights);
-    std::vector<LightTreeNode> nodes;
-    builder.build(builder.whole(), nodes);
-    nodes_ = byLevels(nodes);
-    rankLights(lights, builder.takeOrder());
+    for (LightBounds& light : bounds)
+        if (!isSane(light)) light = LightBounds{{Vec3(0), Vec3(0)}, {0, 0, 1}, 1, 0, false, 0};
+    Builder builder(bounds, stop);
+    nodes_ = builder.takeNodes(builder.build(builder.whole()));
+    rankLights(bounds, builder.takeOrder());
     findWays();
     findGroups();
     findFew();

@@ -1,5 +1,6 @@
 #pragma once
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "trace/light_bounds.h"
@@ -14,8 +15,9 @@ namespace lumi {
 /// splitting into several lights.
 class LightTree {
 public:
-    /// Light i of the tree is bounds[i]. Keeps what it has if the bounds are those of the last build.
-    void build(std::span<const LightBounds> bounds);
+    /// Light i of the tree is bounds[i]. Keeps what it has if the bounds are those of the last build. Throws
+    /// Error(Interrupted) once stopped; the tree is empty then.
+    void build(std::vector<LightBounds> bounds, const std::stop_token& stop = {});
 
     bool empty() const { return nodes_.empty(); }
     /// Draws a light for each point by u and v in [0, 1), or what is elsewhere; see LightTreeKernels.

@@ -39,7 +39,8 @@ struct LightSample {
 class Lights {
 public:
     /// Rebuilds in parallel what `posed` changed; `tables` is of the same scene and must outlive this.
-    void build(const PosedScene& posed, const SceneTables& tables);
+    /// Throws Error(Resources) beyond the memory limit and Error(Interrupted) once stopped; it must be built anew then.
+    void build(const PosedScene& posed, const SceneTables& tables, const std::stop_token& stop = {});
 
     size_t count() const { return entries_.size(); }
     bool empty() const { return picks_.empty(); }

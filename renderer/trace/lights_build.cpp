@@ -1,12 +1,18 @@
 // Collecting the lights of a posed scene.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "trace/lights.h"
 
 namespace lumi {
 namespace {
+
+/// What a triangle that shines takes while the lights are built, at most: twice its nodes.
+constexpr uint64_t kBytesATriangle = 800;
 
 /// Mean luminance that a triangle emits: its emission texture filtered over the triangle's extent. Triangles in
 /// darkness near light keep a small share, so that no texel with light is out of reach.
@@ -29,7 +35,7 @@ float triangleLuminance(const MaterialRecord& material, const InstanceRecord& in
 
 }  // namespace
 
-void Lights::build(const PosedScene& posed, const SceneTables& tables) {
+void Lights::build(const PosedScene& posed, const SceneTables& tables, const std::stop_token& stop) {
     tables_ = &tables;
     environment_.build(posed.scene->environment);
     entries_.clear(), triangles_.clear(), points_.clear(), suns_.clear(), tracks_.clear();
@@ -40,7 +46,8 @@ void Lights::build(const PosedScene& posed, const SceneTables& tables) {
     finiteCount_ = static_cast<uint32_t>(entries_.size());
     addInfinite(posed, collected);
     picks_ = AliasTable(collected.weights);
-    tree_.build(collected.bounds);
+    collected.weights = {};
+    tree_.build(std::move(collected.bounds), stop);
 
     hasEmitters_ = false;
     for (const MaterialRecord& material : tables.materials) hasEmitters_ |= material.emits;
@@ -107,8 +114,9 @@ void Lights::addTriangles(Collected& collected) {
         firstTriangle_[i] = static_cast<uint32_t>(total);
         total += r.triangleCount;
     }
+    checkMemory(fmt::format("choosing among {} triangles that shine", total), total * kBytesATriangle);
     triangleEntry_.assign(total, kNone);
-    std::vector<Triangle> all(total);
+    triangles_.assign(total, {});
     std::vector<float> intensity(total, 0);
     for (size_t i = 0; i < instances.size(); ++i) {
         if (firstTriangle_[i] == kNone) continue;
@@ -122,7 +130,7 @@ void Lights::addTriangles(Collected& collected) {
                 Vec3 p[3] = {r.positions[t.x], r.positions[t.y], r.positions[t.z]};
                 if (!r.inWorld)
                     for (Vec3& corner : p) corner = transformPoint(r.worldFromObject, corner);
-                Triangle& triangle = all[firstTriangle_[i] + primitive];
+                Triangle& triangle = triangles_[firstTriangle_[i] + primitive];
                 triangle.corner = p[0], triangle.edge1 = p[1] - p[0], triangle.edge2 = p[2] - p[0];
                 triangle.radiance = material.emission;
                 triangle.instance = static_cast<uint32_t>(i), triangle.primitive = primitive;
@@ -139,12 +147,16 @@ void Lights::addTriangles(Collected& collected) {
             }
         });
     }
+    const auto shining =
+        static_cast<size_t>(std::count_if(intensity.begin(), intensity.end(), [](float x) { return x > 0; }));
+    entries_.reserve(shining), collected.weights.reserve(shining), collected.bounds.reserve(shining);
     for (size_t k = 0; k < total; ++k) {
         if (intensity[k] <= 0) continue;
-        triangleEntry_[k] = static_cast<uint32_t>(entries_.size());
-        entries_.push_back({Kind::Triangle, static_cast<uint32_t>(triangles_.size())});
-        triangles_.push_back(all[k]);
-        const Triangle& t = all[k];
+        const size_t entry = entries_.size();
+        triangleEntry_[k] = static_cast<uint32_t>(entry);
+        entries_.push_back({Kind::Triangle, static_cast<uint32_t>(entry)});
+        triangles_[entry] = triangles_[k];
+        const Triangle& t = triangles_[entry];
         const InstanceRecord& r = instances[t.instance];
         const bool bothSides = tables_->materials[r.materialOf(t.primitive)].doubleSided;
         collected.weights.push_back(kPi * intensity[k] * (bothSides ? 2 : 1));
@@ -157,6 +169,7 @@ void Lights::addTriangles(Collected& collected) {
         }
         collected.bounds.push_back(bounds);
     }
+    triangles_.resize(shining);
     // Most instances emit with all their triangles, which then need no table.
     for (size_t i = 0; i < instances.size(); ++i) {
         if (firstTriangle_[i] == kNone) continue;

@@ -91,9 +91,9 @@ struct Tracer::Impl {
 
     Spares<PathBatch> spares;
 
-    void makeTables() {
+    void makeTables(const std::stop_token& stop = {}) {
         scene.tables = makeSceneTables(*scene.posed, scene.embree);
-        scene.lights.build(*scene.posed, scene.tables);
+        scene.lights.build(*scene.posed, scene.tables, stop);
     }
     /// The solids that paths from there begin in, as far as they matter.
     MediumStack aroundCamera(const Vec3& place, float time) const {
@@ -123,7 +123,9 @@ void Tracer::bind(std::shared_ptr<const PosedScene> posed, std::stop_token stop)
     const std::shared_ptr<const PosedScene> earlier = std::exchange(scene.posed, posed);
     bool attachedAnew = false;
     try {
-        attachedAnew = scene.embree.bind(*posed, std::move(stop));
+        attachedAnew = scene.embree.bind(*posed, stop);
+        if (!attachedAnew && earlier && shadesAlike(*earlier, *posed)) return;
+        impl_->makeTables(stop);
     } catch (...) {
         // What did not fit leaves nothing behind: an empty scene that can be traced.
         scene.posed = emptyScene();
@@ -131,8 +133,6 @@ void Tracer::bind(std::shared_ptr<const PosedScene> posed, std::stop_token stop)
         impl_->makeTables();
         throw;
     }
-    if (!attachedAnew && earlier && shadesAlike(*earlier, *posed)) return;
-    impl_->makeTables();
     if (earlier && earlier->scene == posed->scene) return;
     gatherTexels(scene.tables.textures);
     if (attachedAnew && byteCount() >= kManyBytes) gatherAllOnHugePages(kGatherSeconds);

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "support/expect_error.h"
+#include "support/memory_limit.h"
 #include "support/transport_scene.h"
 #include "trace/embree_scene.h"
 
@@ -136,6 +137,22 @@ TEST(BindStop, PosesAreStoppedToo) {
                     poseScene(scene, {1, 2, 1}, nullptr, source.get_token());
                 },
                 {"interrupted"});
+}
+
+TEST(ManyLights, CountAgainstTheMemoryLimit) {
+    TinyScene tiny;
+    Material glow = lambert(0.5f);
+    glow.emission = Vec3(1);
+    tiny.add(rectangleMesh(9, 9, Facing::Y, 700, 700), glow);
+    const auto posed = tiny.pose();
+    Tracer tracer;
+    {
+        const MemoryLimit limit(uint64_t(400) << 20);
+        expectError(ErrorKind::Resources, [&] { tracer.bind(posed); }, {"980000 triangles that shine"});
+    }
+    EXPECT_FALSE(meets(tracer, Vec3(1, 5, 1), Vec3(0, -1, 0))) << "an empty scene";
+    tracer.bind(posed);
+    EXPECT_TRUE(meets(tracer, Vec3(1, 5, 1), Vec3(0, -1, 0)));
 }
 
 TEST(ManyInstances, TakeFewBytesEach) {

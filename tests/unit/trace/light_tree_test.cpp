@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "base/error.h"
 #include "base/isa.h"
 #include "math/hash.h"
 #include "math/statistics.h"
@@ -208,6 +209,19 @@ TEST(LightTree, ComesCloserToIrradianceThanIntensityAlone) {
         }
         EXPECT_LT(byTree, 0.6 * byIntensity) << trial;
     }
+}
+
+TEST(LightTree, StopsAndIsEmptyThen) {
+    LightTree tree;
+    tree.build(scattered(3));
+    std::stop_source source;
+    source.request_stop();
+    EXPECT_THROW(tree.build(scattered(100000), source.get_token()), Error);
+    EXPECT_TRUE(tree.empty());
+    tree.build(scattered(40));
+    double sum = 0;
+    for (uint32_t i = 0; i < 40; ++i) sum += tree.probability(pointAt(Vec3(0), Vec3(0, 1, 0), 0), 0, i);
+    EXPECT_NEAR(sum, 1, 1e-3);
 }
 
 TEST(LightTree, EdgeCases) {
