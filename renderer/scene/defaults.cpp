@@ -233,8 +233,14 @@ void addDefaults(Scene& scene, MessageLog& log, bool allowSky, std::stop_token s
     if (!allowSky || hasLight(scene)) return;
     const auto lit = [](const Material& material) { return !material.unlit; };
     if (!scene.instances.empty() && !someSurface(scene, lit)) return;
-    scene.environment.image = std::make_shared<const Image>(makeDefaultSky());
-    log.warning(scene.path + ": no light and no emission; lit by the built-in sky");
+    scene.environment.standIn = std::make_shared<const Image>(makeDefaultSky());
+    scene.environment.chooseStandIn();
+    const auto emits = [](const Material& material) { return material.emits() && !material.unlit; };
+    log.warning(scene.path +
+                (someSurface(scene, emits)
+                     ? ": no light, and emission only in textures of strength 1 or less, which paint glowing "
+                       "parts; lit by the built-in sky (environment.scale 0 takes it away)"
+                     : ": no light and no emission; lit by the built-in sky"));
 }
 
 }  // namespace lumi

@@ -101,10 +101,13 @@ void Environment::describe(ParameterVisitor& v) {
               .unit = "deg",
               .help = "About +Y, counter-clockwise seen from above.",
               .redo = Redo::Samples});
-    v.when(image == nullptr, [&] {
+    v.when(image == nullptr || standIn, [&] {
         v.colour(
             "constant", constant,
-            {.label = "Radiance", .max = 1e6, .help = "Uniform radiance from all directions when there is no image."});
+            {.label = "Radiance",
+             .max = 1e6,
+             .help = "Uniform radiance from all directions where there is no image; any but black takes the place of "
+                     "the built-in sky."});
     });
 }
 

@@ -44,9 +44,15 @@ struct Environment {
     std::shared_ptr<const Image> image;  ///< RGB radiance, or null: `constant`
     std::string file;                    ///< for messages and the state; empty for built-in skies
     Vec3 constant{0};                    ///< radiance
+    /// The built-in sky, in scenes that have no light: the image as long as `constant` is black.
+    std::shared_ptr<const Image> standIn;
     float scale = 1;
     float rotateDeg = 0;  ///< about +Y, counter-clockwise seen from above
     bool visible() const { return image != nullptr || !isBlack(constant); }
+    /// To be called once `constant` changes.
+    void chooseStandIn() {
+        if (standIn) image = isBlack(constant) ? standIn : nullptr;
+    }
 
     void describe(ParameterVisitor&);
 };

@@ -137,7 +137,7 @@ Scene& DocumentFields::edit(Document& document) {
 void Document::adoptSkyImage(const Document& other) {
     Environment& sky = DocumentFields::edit(*this).environment;
     sky.file = other.edited_->environment.file;
-    sky.image = other.edited_->environment.image;
+    sky.image = other.edited_->environment.image, sky.standIn = other.edited_->environment.standIn;
     environmentDigest_ = other.environmentDigest_;
 }
 
@@ -152,6 +152,7 @@ void DocumentFields::readSky(Document& document, Environment& sky, const std::st
     const std::filesystem::path beside = std::filesystem::path(where).parent_path() / path;
     if (!std::filesystem::exists(path) && std::filesystem::exists(beside)) path = beside;
     sky.image = std::make_shared<Image>(loadImage(path));
+    sky.standIn = nullptr;
     document.environmentDigest_ = digest(readFile(path));
 }
 
@@ -176,6 +177,7 @@ void DocumentFields::addScene(const Document& document, const std::string& filte
                           },
                           [copy](Document& d, const std::string& name, const auto&, const std::string& where) {
                               if (name == "file") readSky(d, *copy, where);
+                              copy->chooseStandIn();
                               edit(d).environment = *copy;
                           },
                           true});

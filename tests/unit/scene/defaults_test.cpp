@@ -199,6 +199,17 @@ TEST(Defaults, DarkScenesGetTheSkyAndAWarning) {
     addDefaults(glowing, log, true);
     EXPECT_FALSE(glowing.environment.visible());
 
+    // What only paints glowing parts is told apart.
+    Scene dial = sceneOf(boxMesh(Vec3(1)));
+    dial.materials[0].emission = Vec3(1);
+    auto picture = std::make_shared<TextureImage>();
+    picture->levels.push_back({{1, 1}, {255, 0, 0, 255}, {}});
+    dial.materials[0].emissionTexture.image = picture;
+    addDefaults(dial, log, true);
+    EXPECT_TRUE(dial.environment.visible());
+    ASSERT_EQ(log.warnings().size(), 2u);
+    EXPECT_NE(log.warnings()[1].find("textures of strength 1 or less"), std::string::npos) << log.warnings()[1];
+
     // An unlit card lights nothing beside it; alone it needs no light.
     Scene card = sceneOf(boxMesh(Vec3(1)));
     card.materials[0].emission = Vec3(1), card.materials[0].unlit = true;

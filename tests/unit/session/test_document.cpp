@@ -6,6 +6,7 @@
 #include <set>
 
 #include "image/exr.h"
+#include "scene/defaults.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 #include "support/tiny_scene.h"
@@ -349,6 +350,32 @@ TEST(Document, ItsCameraTrackFollowsTheKeysUnderTheOpenShutter) {
     Document fixed(scene);
     fixed.setText("camera.eye", "0,2,5");
     EXPECT_TRUE(fixed.cameraTrack().empty());
+}
+
+TEST(Document, ARadianceTakesThePlaceOfTheBuiltInSky) {
+    MessageLog log;
+    Scene dark = makeTinyScene();
+    dark.environment = {};
+    dark.lights.clear();
+    for (Instance& instance : dark.instances) instance.light = -1;
+    for (Material& material : dark.materials) material.emission = Vec3(0);
+    addDefaults(dark, log, true);
+    Document document(std::make_shared<const Scene>(dark));
+    const auto builtIn = document.scene()->environment.image;
+    ASSERT_NE(builtIn, nullptr);
+    EXPECT_GE(document.setText("environment.constant", "0.5,1,2"), Redo::Samples);
+    EXPECT_EQ(document.scene()->environment.image, nullptr);
+    EXPECT_EQ(document.scene()->environment.constant, Vec3(0.5f, 1, 2));
+    document.reset({"environment.constant"});
+    EXPECT_EQ(document.scene()->environment.image, builtIn);
+    document.setText("environment.constant", "1,1,1");
+    TemporaryFolder folder;
+    writeSky(folder / "sky.exr", 1);
+    document.setText("environment.file", (folder / "sky.exr").string());
+    document.setText("environment.constant", "2,2,2");
+    EXPECT_NE(document.scene()->environment.image, nullptr) << "a file is there because someone wants it";
+    document.setText("environment.file", "");
+    EXPECT_EQ(document.scene()->environment.image, builtIn);
 }
 
 }  // namespace
