@@ -12,6 +12,12 @@
 namespace lumi::contract {
 namespace {
 
+/// Parallel rays also see what is close to the plane of the camera, where depths have no digits.
+bool isClose(const CameraPose& camera, const Vec3& world) {
+    const Vec3 place = transformPoint(camera.cameraFromWorld, world);
+    return camera.projection == Projection::Orthographic && std::abs(place.z) < 0.01f * glm::length(place);
+}
+
 /// What motion has to be, and the view depth that it is measured against.
 struct ExpectedMotion {
     Vec3 motion;
@@ -119,9 +125,9 @@ ContractFinding depthGradients(const CheckedFrame& frame) {
     Rule rule("depthGradient is the change of 1/depth from pixel to pixel, relative to it", 1e-3);
     constexpr double kStep = 1e-3;  // of a pixel: what parallel rays see is not straight
     frame.eachSurface([&](Pixel p) {
-        if (!holdsOffsets(frame, p)) return;
         const CameraPose camera = frame.camera(p);
         const Vec3 world = colourAt(frame.signals[Signal::Position], p), at = camera.project(world);
+        if (!holdsOffsets(frame, p) || isClose(camera, world)) return;
         const Vec3 place = transformPoint(camera.cameraFromWorld, world);
         const Vec3 normal =
             transformVector(camera.cameraFromWorld, colourAt(frame.signals[Signal::GeometricNormal], p));
@@ -154,6 +160,7 @@ ContractFinding motionVectors(const CheckedFrame& frame) {
 ContractFinding depthMotion(const CheckedFrame& frame) {
     Rule rule("motion's third channel is the change of view depth, relative to it", 1e-3);
     frame.eachPixel([&](Pixel p) {
+        if (!frame.sky(p) && isClose(frame.camera(p), colourAt(frame.signals[Signal::Position], p))) return;
         const auto expected = expectedMotion(frame, p);
         if (!expected) return;
         const double error = std::abs(double(frame.signals[Signal::Motion].at(2, p.x, p.y)) - expected->motion.z);

@@ -96,6 +96,21 @@ TEST_F(ContractCheck, AnUndamagedFrameHolds) {
     }
 }
 
+/// Parallel rays see the floor rise through the plane of the camera, where 1/depth has no bound.
+TEST_F(ContractCheck, HoldsWhereSurfacesCrossAnOrthographicCamerasPlane) {
+    FrameSampling s = sampling(Jitter::PerPixel);
+    Camera camera = lookFrom(Vec3(0, 1, 2), Vec3(0));
+    camera.projection = Projection::Orthographic, camera.yMag = 3;
+    s.camera = s.previousCamera = poseCamera(camera, kExtent);
+    const Frame f = frame(s);
+    bool close = false;
+    for (int y = 0; y < kExtent.height; ++y)
+        for (int x = 0; x < kExtent.width; ++x) close |= f.signals[Signal::Depth].at(0, x, y) < 0.02f;
+    EXPECT_TRUE(close) << "the floor comes to the camera's plane";
+    for (const ContractFinding& finding : checkSignals(f.signals, s, tracer_, tracer_))
+        EXPECT_TRUE(finding.holds()) << finding.text();
+}
+
 TEST_F(ContractCheck, CountsPixels) {
     const FrameSampling s = sampling(Jitter::PerPixel);
     const Frame f = frame(s);
