@@ -15,7 +15,8 @@ namespace {
 /// Parallel rays also see what is close to the plane of the camera, where depths have no digits.
 bool isClose(const CameraPose& camera, const Vec3& world) {
     const Vec3 place = transformPoint(camera.cameraFromWorld, world);
-    return camera.projection == Projection::Orthographic && std::abs(place.z) < 0.01f * glm::length(place);
+    return camera.projection == Projection::Orthographic &&
+           std::abs(place.z) < 0.01f * std::max(glm::length(place), camera.halfHeight);
 }
 
 /// What motion has to be, and the view depth that it is measured against.
