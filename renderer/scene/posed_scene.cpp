@@ -122,6 +122,7 @@ void openShutter(const ShutterTimes& times, bool cut, const PosedScene* before, 
                 if (!track && !previous) continue;
                 PosedMotion& motion = motionOf(pose);
                 motion.moves |= track != nullptr;
+                if (track) pose.worldFromObject = track->worldFromObject.front();
                 motion.track = std::move(track), motion.previousTrack = std::move(previous);
             }
         },

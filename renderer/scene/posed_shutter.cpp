@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/error.h"
 #include "scene/bounds.h"
+#include "scene/reach.h"
 #include "scene/shutter_segments.h"
 
 namespace lumi {
@@ -100,6 +102,21 @@ bool suffices(const Instance& instance, std::span<const PosedMoment> moments, si
     return true;
 }
 
+/// What is flat at a moment, as things are that grow from nothing, becomes a thousandth of what it is at the next moment
+/// at which it is not, or else the last: rays cannot be carried into what is flat.
+void unflatten(std::vector<Mat4>& places) {
+    const std::vector<Mat4> truth = places;
+    for (size_t i = 0; i < truth.size(); ++i) {
+        if (carriesRays(truth[i])) continue;
+        const auto carries = [](const Mat4& m) { return carriesRays(m); };
+        const auto here = truth.begin() + static_cast<ptrdiff_t>(i);
+        const auto later = std::find_if(here, truth.end(), carries);
+        const auto earlier = std::find_if(std::make_reverse_iterator(here), truth.rend(), carries);
+        if (later != truth.end()) places[i] = between(truth[i], *later, kMostShutterStray);
+        else if (earlier != truth.rend()) places[i] = between(truth[i], *earlier, kMostShutterStray);
+    }
+}
+
 }  // namespace
 
 PosedMoment poseMoment(const Scene& scene, float time) {
@@ -175,6 +192,7 @@ std::shared_ptr<const ShutterTrack> shutterTrack(const Instance& instance, std::
         if (moves || i == 0) track->worldFromObject.push_back(placementOf(instance, moments[i]));
         if (bends) track->deformed.push_back(i == 0 && deformed ? deformed : deformAt(instance, moments[i]));
     }
+    unflatten(track->worldFromObject);
     return track;
 }
 

@@ -88,6 +88,16 @@ bool isInReach(const Mat4& m) {
     return true;
 }
 
+bool carriesRays(const Mat4& m) {
+    // In double: a float's determinant underflows at a scale of 1e-13.
+    constexpr double kMost = 1e7;  // times a camera's distance, 1e10 m: below 1.8e18
+    const glm::dmat3 inverse = glm::inverse(glm::dmat3(glm::dmat4(m)));
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            if (!(std::abs(inverse[column][row]) <= kMost)) return false;
+    return true;
+}
+
 size_t firstOutOfReach(std::span<const Vec3> points) {
     const auto found = std::find_if(points.begin(), points.end(), [](const Vec3& p) { return !isInReach(p); });
     return static_cast<size_t>(found - points.begin());

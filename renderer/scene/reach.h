@@ -21,6 +21,10 @@ inline bool isInReach(float x) { return std::abs(x) <= kReach; }
 inline bool isInReach(const Vec3& p) { return isInReach(p.x) && isInReach(p.y) && isInReach(p.z); }
 bool isInReach(const Mat4& m);
 
+/// Can rays be carried into the space of `m`? Not if it flattens, nearly so, or makes things so small that a ray's
+/// numbers there pass what Embree allows.
+bool carriesRays(const Mat4& m);
+
 /// The first point that is not in reach; points.size() if all are.
 size_t firstOutOfReach(std::span<const Vec3> points);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "scene/reach.h"
 #include "trace/embree_parts.h"
 
 namespace lumi {
@@ -31,17 +32,6 @@ bool hasAlpha(const Scene& scene, const Mesh& mesh) {
     return std::any_of(mesh.triangleMaterial.begin(), mesh.triangleMaterial.end(), masked);
 }
 
-/// Can rays be carried into the space of `m`? Not if it flattens, nearly so, or makes things so small that a ray's
-/// numbers there pass what Embree allows. In double: a float's determinant underflows at a scale of 1e-13.
-bool carriesRays(const Mat4& m) {
-    constexpr double kMost = 1e7;  // times a camera's distance, 1e10 m: below 1.8e18
-    const glm::dmat3 inverse = glm::inverse(glm::dmat3(glm::dmat4(m)));
-    for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row)
-            if (!(std::abs(inverse[column][row]) <= kMost)) return false;
-    return true;
-}
-
 /// Does `m` leave nothing to be seen of meshes in reach, a line or a point?
 bool isSpeck(const Mat4& m) {
     const glm::dmat3 d{glm::dmat4(m)};
@@ -51,7 +41,7 @@ bool isSpeck(const Mat4& m) {
 }
 
 /// carriesRays() at all moments of the open shutter: between two of them a mirroring flattens too.
-bool carriesRays(const PosedInstance& pose) {
+bool alwaysCarriesRays(const PosedInstance& pose) {
     if (!carriesRays(pose.worldFromObject)) return false;
     if (!pose.track()) return true;
     const bool mirroring = isMirroring(pose.worldFromObject);
@@ -102,7 +92,7 @@ std::vector<EmbreeScene::Plan> EmbreeScene::makePlans(const PosedScene& posed, c
                 instance.material >= 0 ? hasAlpha(scene, static_cast<uint32_t>(instance.material)) : use.hasAlpha;
             const bool instanced = pose.deformed || moves || use.count > 1;
             // What is flat at present stands in the world as it is when the shutter opens.
-            plan.inWorld = !instanced || !carriesRays(pose);
+            plan.inWorld = !instanced || !alwaysCarriesRays(pose);
             plan.mode = pose.deformed ? Mode::Deforming : plan.inWorld ? Mode::Direct : Mode::Instanced;
             if (instanced && plan.inWorld && isSpeck(pose.worldFromObject)) plan.mode = Mode::None;
         }

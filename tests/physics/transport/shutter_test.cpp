@@ -154,6 +154,41 @@ TEST(Shutter, ConvergesToTheMeanOfPosedFrames) {
     }
 }
 
+/// Mean of the picture of a shining card whose scale goes straight from one to the other while the shutter is open.
+double meanOfScaledCard(const Vec3& from, const Vec3& to) {
+    TinyScene tiny;
+    Material glow = lambert(0);
+    glow.emission = Vec3(1), glow.doubleSided = true;
+    const int card = tiny.add(rectangleMesh(1, 1, Facing::Z), glow);
+    const int node = tiny.scene.instances[static_cast<size_t>(card)].node;
+    tiny.scene.nodes[static_cast<size_t>(node)].hasMatrix = false;
+    Animation animation;
+    animation.duration = 1, animation.loop = false;
+    animation.channels.push_back(channel(node, AnimatedProperty::Scale, 3, {from.x, from.y, from.z, to.x, to.y, to.z}));
+    tiny.scene.animations.push_back(animation);
+    Tracer tracer;
+    tracer.bind(tiny.pose({0, 1, 0}));
+    FrameSampling sampling =
+        frameOf(lookFrom(Vec3(0, 0, 2), Vec3(0), 60), {32, 32}, 256, plainPaths(1), {Signal::Noisy}, 3);
+    sampling.shutterOpen = true;
+    Signals frame;
+    EXPECT_TRUE(tracer.sample(sampling, frame));
+    double sum = 0;
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 32; ++x) sum += frame[Signal::Noisy].at(0, x, y);
+    return sum / (32 * 32);
+}
+
+TEST(Shutter, ThingsGrowFromNothingAndVanish) {
+    const double whole = meanOfScaledCard(Vec3(1), Vec3(1));
+    EXPECT_GT(whole, 0.1);
+    EXPECT_NEAR(meanOfScaledCard(Vec3(0), Vec3(1)) / whole, 1.0 / 3, 0.005);
+    EXPECT_NEAR(meanOfScaledCard(Vec3(1), Vec3(0)) / whole, 1.0 / 3, 0.005);
+    EXPECT_NEAR(meanOfScaledCard(Vec3(1), Vec3(0, 1, 1)) / whole, 0.5, 0.005);
+    EXPECT_NEAR(meanOfScaledCard(Vec3(1, 1, 0), Vec3(1)) / whole, 1, 0.005) << "flat as it is";
+    EXPECT_EQ(meanOfScaledCard(Vec3(0), Vec3(0)), 0);
+}
+
 TEST(Shutter, StrategiesAgreeWhileLightsMove) {
     Tracer tracer;
     tracer.bind(poseScene(everythingMoves().pose()->scene, {0, kExposure, 0}));
