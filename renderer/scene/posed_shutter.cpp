@@ -102,8 +102,8 @@ bool suffices(const Instance& instance, std::span<const PosedMoment> moments, si
     return true;
 }
 
-/// What is flat at a moment, as things are that grow from nothing, becomes a thousandth of what it is at the next moment
-/// at which it is not, or else the last: rays cannot be carried into what is flat.
+/// What is flat at a moment, as things are that grow from nothing, becomes a thousandth of what it is at the next
+/// moment at which it is not, or else the last: rays cannot be carried into what is flat.
 void unflatten(std::vector<Mat4>& places) {
     const std::vector<Mat4> truth = places;
     for (size_t i = 0; i < truth.size(); ++i) {

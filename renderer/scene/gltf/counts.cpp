@@ -77,7 +77,8 @@ private:
     void addTriangles(const tinygltf::Primitive& primitive, const std::string& path) {
         const auto position = primitive.attributes.find("POSITION");
         if (position == primitive.attributes.end()) return;
-        const tinygltf::Accessor* corners = accessor(primitive.indices >= 0 ? primitive.indices : position->second);
+        const int indices = indicesOf(primitive);
+        const tinygltf::Accessor* corners = accessor(indices >= 0 ? indices : position->second);
         if (!corners || primitive.mode < TINYGLTF_MODE_TRIANGLES) return;
         spend(triangles_, primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners->count / 3 : corners->count, path);
     }

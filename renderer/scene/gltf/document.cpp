@@ -50,10 +50,9 @@ bool isSupported(const std::string& extension) {
     return in(kSupportedExtensions) || in(kStandInExtensions);
 }
 
-bool isData(const std::string& uri) { return uri.starts_with("data:"); }
 /// Of data their kind alone.
 std::string shortened(const std::string& uri) {
-    return isData(uri) && uri.size() > 40 ? uri.substr(0, 40) + "..." : uri;
+    return isDataUri(uri) && uri.size() > 40 ? uri.substr(0, 40) + "..." : uri;
 }
 
 std::string firstLine(const std::string& text) { return text.substr(0, text.find_first_of("\r\n")); }
@@ -110,7 +109,7 @@ void Document::parse(std::span<const uint8_t> file) {
     uint64_t bytes = 0;
     const JsonSummary summary = inspectJson(json, name_);
     checkRequiredExtensions(summary.requiredExtensions);
-    bool needsPatch = summary.hasDraco || summary.hasOtherData;
+    bool needsPatch = summary.hasDraco || summary.hasOtherUris || summary.hasSparseAlone;
     for (const JsonSummary::Buffer& buffer : summary.buffers) {
         needsPatch |= buffer.isFallback;
         if (buffer.isFallback) continue;
@@ -228,7 +227,7 @@ std::filesystem::path Document::resolve(const std::string& uri) const {
 bool Document::fileExists(const std::string& tinygltfPath) {
     if (!tinygltfPath.starts_with(kFolder + "/")) return false;
     const std::string uri = tinygltfPath.substr(kFolder.size() + 1);
-    if (isData(uri)) {
+    if (isDataUri(uri)) {
         missingFile_ = "a buffer has an unsupported kind of data URI, \"" + shortened(uri) + '"';
         return false;
     }

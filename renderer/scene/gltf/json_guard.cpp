@@ -51,20 +51,53 @@ Json* extensionIn(Json& object, const char* name) {
     return extensions ? objectIn(*extensions, name) : nullptr;
 }
 
+bool isHex(char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; }
+
+std::string lower(std::string_view text) {
+    std::string result(text);
+    std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return std::tolower(c); });
+    return result;
+}
+
 /// Where the base64 begins in a data URI that tinygltf takes for a file, since it does not know the kind; else 0.
 size_t otherDataAt(const std::string& uri) {
-    constexpr std::string_view kEnd = ";base64,";
-    if (!uri.starts_with("data:")) return 0;
+    if (!isDataUri(uri)) return 0;
     const size_t comma = uri.find(',');
     if (comma == uri.npos) return 0;
     const std::string head = uri.substr(0, comma + 1);
-    return head.ends_with(kEnd) && !tinygltf::IsDataURI(head) ? head.size() : 0;
+    return lower(head).ends_with(";base64,") && !tinygltf::IsDataURI(head) ? head.size() : 0;
 }
 
-void nameKind(Json& owner) {
+/// Of a file's name, whether `at` holds what tinygltf decodes otherwise than RFC 3986: a plus, or a percent sign that
+/// escapes nothing.
+bool isMisread(std::string_view name, size_t at) {
+    const bool escapes = at + 2 < name.size() && isHex(name[at + 1]) && isHex(name[at + 2]);
+    return name[at] == '+' || (name[at] == '%' && !escapes);
+}
+
+bool isOther(const std::string& uri) {
+    if (isDataUri(uri)) return otherDataAt(uri) > 0;
+    for (size_t at = uri.find_first_of("+%"); at != uri.npos; at = uri.find_first_of("+%", at + 1))
+        if (isMisread(uri, at)) return true;
+    return false;
+}
+
+void makeReadable(Json& owner) {
     if (!owner.is_object() || !owner.contains("uri") || !owner["uri"].is_string()) return;
     auto& uri = owner["uri"].get_ref<std::string&>();
     if (const size_t data = otherDataAt(uri); data > 0) uri.replace(0, data, "data:application/octet-stream;base64,");
+    if (isDataUri(uri) || !isOther(uri)) return;
+    std::string escaped;
+    for (size_t at = 0; at < uri.size(); ++at)
+        if (isMisread(uri, at)) escaped += uri[at] == '+' ? "%2B" : "%25";
+        else escaped += uri[at];
+    uri = std::move(escaped);
+}
+
+/// Moves the indices of a primitive into an extension.
+void moveIndices(Json& primitive, const char* extension) {
+    primitive["extensions"][extension]["indices"] = primitive["indices"];
+    primitive.erase("indices");
 }
 
 /// Bytes beyond ASCII as \xNN: what the parser cites ends where it is no UTF-8.
@@ -97,11 +130,11 @@ public:
     bool number_float(number_float_t, const string_t&) override { return count(); }
     bool string(string_t& value) override {
         if (depth_ == 2 && section_ == "extensionsRequired") summary.requiredExtensions.push_back(value);
-        summary.hasOtherData |=
-            depth_ == 3 && (section_ == "buffers" || section_ == "images") && key_ == "uri" && otherDataAt(value) > 0;
+        summary.hasOtherUris |=
+            depth_ == 3 && (section_ == "buffers" || section_ == "images") && key_ == "uri" && isOther(value);
         if (inBuffer() && key_ == "uri") {
             summary.buffers.back().hasUri = !value.empty();
-            summary.buffers.back().external = !value.empty() && !value.starts_with("data:");
+            summary.buffers.back().external = !value.empty() && !isDataUri(value);
         }
         return count(kBodyBytes + value.size());
     }
@@ -110,9 +143,13 @@ public:
         enter();
         if (freeDepth_ == 0) summary.treeBytes += 2 * modelBytes(section_, depth_);
         if (depth_ == 3 && section_ == "buffers") summary.buffers.emplace_back();
+        if (depth_ == 3) isSparse_ = hasView_ = false;
         return true;
     }
-    bool end_object() override { return leave(); }
+    bool end_object() override {
+        summary.hasSparseAlone |= depth_ == 3 && section_ == "accessors" && isSparse_ && !hasView_;
+        return leave();
+    }
     bool start_array(std::size_t) override {
         enter();
         return true;
@@ -121,6 +158,7 @@ public:
     bool key(string_t& value) override {
         if (depth_ == 1) section_ = value;
         summary.hasDraco |= section_ == "meshes" && value == kDraco;
+        if (depth_ == 3) isSparse_ |= value == "sparse", hasView_ |= value == "bufferView";
         if (freeDepth_ == 0 || depth_ == freeDepth_)
             freeDepth_ = value == "extras" || value == "extensions" ? depth_ : 0;
         key_ = value;
@@ -162,9 +200,12 @@ private:
     int depth_ = 0;
     int freeDepth_ = 0;  ///< that of the "extras" or "extensions" being read, else 0
     std::string section_, key_;
+    bool isSparse_ = false, hasView_ = false;  ///< of the accessor being read
 };
 
 }  // namespace
+
+bool isDataUri(std::string_view uri) { return lower(uri.substr(0, 5)) == "data:"; }
 
 std::string readableByTinygltf(std::string_view json) {
     Json tree = Json::parse(json.begin(), json.end());
@@ -173,19 +214,26 @@ std::string readableByTinygltf(std::string_view json) {
         for (Json& entry : parent[name]) visit(entry);
     };
     each(tree, "buffers", [](Json& buffer) {
-        nameKind(buffer);
+        makeReadable(buffer);
         const Json* meshopt = extensionIn(buffer, kMeshopt);
         if (!meshopt || !meshopt->contains("fallback") || (*meshopt)["fallback"] != true) return;
         buffer["uri"] = "data:application/octet-stream;base64,AA==";
         buffer["byteLength"] = 1;
     });
-    each(tree, "images", nameKind);
+    each(tree, "images", makeReadable);
+    std::vector<bool> sparseAlone;
+    each(tree, "accessors", [&](Json& accessor) {
+        sparseAlone.push_back(accessor.is_object() && accessor.contains("sparse") && !accessor.contains("bufferView"));
+    });
     each(tree, "meshes", [&](Json& mesh) {
-        each(mesh, "primitives", [](Json& primitive) {
-            Json* draco = extensionIn(primitive, kDraco);
-            if (!draco || !primitive.contains("indices")) return;
-            (*draco)["indices"] = primitive["indices"];
-            primitive.erase("indices");
+        each(mesh, "primitives", [&](Json& primitive) {
+            if (!primitive.is_object() || !primitive.contains("indices")) return;
+            const Json& indices = primitive["indices"];
+            if (extensionIn(primitive, kDraco)) moveIndices(primitive, kDraco);
+            else if (indices.is_number_unsigned() && indices.get<uint64_t>() < sparseAlone.size() &&
+                     sparseAlone[indices.get<uint64_t>()] &&
+                     (!primitive.contains("extensions") || objectIn(primitive, "extensions")))
+                moveIndices(primitive, kSparseIndices);
         });
     });
     return tree.dump(-1, ' ', false, Json::error_handler_t::replace);

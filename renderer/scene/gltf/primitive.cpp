@@ -1,5 +1,7 @@
 #include "scene/gltf/primitive.h"
 
+#include "scene/gltf/values.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -175,8 +177,8 @@ std::vector<UVec3> readTriangles(const Document& document, const tinygltf::Primi
     if (draco) return draco->triangles;
 
     std::vector<uint32_t> indices;
-    if (primitive.indices >= 0) {
-        indices = readIntegers(document, primitive.indices, 1, path + "/indices");
+    if (const int accessor = indicesOf(primitive); accessor >= 0) {
+        indices = readIntegers(document, accessor, 1, path + "/indices");
         for (const uint32_t index : indices)
             if (index >= vertexCount)
                 document.fail(path + "/indices", "refers to a vertex that does not exist",

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "math/vector.h"
+#include "scene/gltf/json_guard.h"
 
 namespace lumi::gltf {
 
@@ -57,6 +58,12 @@ inline Vec3 vec3From(const std::vector<double>& values, Vec3 otherwise) {
 inline const tinygltf::Value* extensionOf(const tinygltf::ExtensionMap& extensions, const std::string& name) {
     const auto found = extensions.find(name);
     return found != extensions.end() && found->second.IsObject() ? &found->second : nullptr;
+}
+
+/// The accessor of the primitive's indices, or -1; see kSparseIndices.
+inline int indicesOf(const tinygltf::Primitive& primitive) {
+    const tinygltf::Value* sparse = extensionOf(primitive.extensions, kSparseIndices);
+    return sparse && primitive.indices < 0 ? integerOf(*sparse, "indices", -1) : primitive.indices;
 }
 
 }  // namespace lumi::gltf

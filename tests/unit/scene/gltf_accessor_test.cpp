@@ -152,6 +152,23 @@ TEST(GltfAccessor, RangesAreChecked) {
         {"/attributes/POSITION", "absurd count", "4000000000"});
 }
 
+TEST(GltfAccessor, IndicesMayBeSparseAlone) {
+    GltfBuilder file;
+    file.triangle();
+    const std::vector<uint16_t> places{1, 2}, values{1, 2};
+    const int placesView = file.view(places.data(), 4), valuesView = file.view(values.data(), 4);
+    file.json["accessors"].push_back({{"componentType", 5123},
+                                      {"count", 3},
+                                      {"type", "SCALAR"},
+                                      {"sparse",
+                                       {{"count", 2},
+                                        {"indices", {{"bufferView", placesView}, {"componentType", 5123}}},
+                                        {"values", {{"bufferView", valuesView}}}}}});
+    file.primitive()["indices"] = file.json["accessors"].size() - 1;
+    const Scene scene = file.load();
+    EXPECT_EQ(scene.instances.at(0).mesh->triangles, (std::vector<UVec3>{{0, 1, 2}}));
+}
+
 TEST(GltfAccessor, SparseRangesAreChecked) {
     const auto refused = [](const std::function<void(nlohmann::json&)>& breakIt, const std::string& part) {
         GltfBuilder file;

@@ -364,6 +364,21 @@ TEST(GltfFeatures, ContentDigestFollowsEveryByte) {
     EXPECT_NE(before, file.load().contentDigest);
 }
 
+/// In a path a plus is a plus [RFC 3986]; a percent sign that escapes nothing is one too.
+TEST(GltfFeatures, NamesOfFilesMayHavePlusAndPercentSigns) {
+    test::TemporaryFolder folder;
+    GltfBuilder file;
+    file.triangle();
+    for (const char* name : {"c++.bin", "100%.bin", "50%2B.bin"}) {
+        const std::string onDisk = name == std::string("50%2B.bin") ? "50+.bin" : name;
+        file.json["buffers"] = {{{"byteLength", file.bin.size()}, {"uri", name}}};
+        writeFileAtomically(folder / onDisk, file.bin);
+        writeFileAtomically(folder / "a.gltf", std::string_view(file.json.dump()));
+        MessageLog log;
+        EXPECT_EQ(loadGltf(folder / "a.gltf", log).triangleCount(), 1) << name;
+    }
+}
+
 TEST(GltfFeatures, FilesWithPartsAndEscapedNames) {
     test::TemporaryFolder folder;
     GltfBuilder file;

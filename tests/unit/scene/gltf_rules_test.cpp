@@ -206,6 +206,8 @@ TEST(GltfRules, DataWithoutAKindAreBytes) {
                             withBuffer("data:" + std::string(kind) + ";base64," + std::string(48, 'A')));
         EXPECT_EQ(loadGltf(folder / "a.gltf", log).triangleCount(), 1) << kind;
     }
+    writeFileAtomically(folder / "a.gltf", withBuffer("DATA:Application/Octet-Stream;BASE64," + std::string(48, 'A')));
+    EXPECT_EQ(loadGltf(folder / "a.gltf", log).triangleCount(), 1);
     writeFileAtomically(folder / "a.gltf", withBuffer("data:text/plain," + std::string(500, 'A')));
     const std::string shown = "\"data:text/plain," + std::string(24, 'A') + "...\"";
     test::expectError(ErrorKind::BadInput, [&] { loadGltf(folder / "a.gltf", log); },
