@@ -144,12 +144,17 @@ void warnOfDistance(const Scene& scene, MessageLog& log) {
     const Bounds3 box = scene.restBounds();
     if (box.empty()) return;
     const float distance = std::max(maxComponent(-box.lower), maxComponent(box.upper));
-    const float start = 256 * (std::nextafter(distance, kInfinity) - distance);
+    const float coarse = 256 * (std::nextafter(distance, kInfinity) - distance), start = std::max(coarse, 0x1p-16f);
     if (start <= kMostOfSize * box.radius()) return;
-    log.warning(
-        fmt::format("{}: lies {:.3g} m from the origin, where numbers are so coarse that rays may start {:.2g} m "
-                    "off surfaces, which loses shadows and light in corners; move it to the origin",
-                    std::filesystem::path(scene.path).filename().string(), distance, start));
+    const std::string file = std::filesystem::path(scene.path).filename().string();
+    const std::string loss =
+        fmt::format("rays may start {:.2g} m off surfaces, which loses shadows and light in corners", start);
+    if (coarse >= start)
+        log.warning(
+            fmt::format("{}: lies {:.3g} m from the origin, where numbers are so coarse that {}; move it to the "
+                        "origin",
+                        file, distance, loss));
+    else log.warning(fmt::format("{}: is {:.2g} m in size: {}; make it larger", file, 2 * box.radius(), loss));
 }
 
 }  // namespace lumi

@@ -41,8 +41,8 @@ void requireReach(const PosedScene& posed, std::span<const Bounds3> bounds);
 /// sees. `where` is the scene's file.
 void requireReach(const CameraPose& camera, const std::string& where);
 
-/// Warns of a scene at rest that lies where floats are coarse beside its size: rays start up to 256 units in the last
-/// place off surfaces [Waechter & Binder 2019].
+/// Warns of a scene at rest that lies where floats are coarse beside its size, or is small: rays start up to 256 units
+/// in the last place off surfaces, and 15 um near the origin [Waechter & Binder 2019].
 void warnOfDistance(const Scene& scene, MessageLog& log);
 
 }  // namespace lumi

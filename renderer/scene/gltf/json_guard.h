@@ -32,8 +32,8 @@ inline constexpr const char* kSparseIndices = "LUMISCOPE_sparse_indices";
 bool isDataUri(std::string_view uri);
 
 /// The JSON in a form that tinygltf accepts: every fallback buffer is one byte long and embedded, so that nothing is
-/// read for it; data URIs in base64 of other kinds than tinygltf knows, or of none [RFC 2397], are bytes; plus signs and
-/// lone percent signs in names of files are escaped; the indices of Draco primitives and those of sparse accessors
+/// read for it; data URIs in base64 of other kinds than tinygltf knows, or of none [RFC 2397], are bytes; plus signs
+/// and lone percent signs in names of files are escaped; the indices of Draco primitives and those of sparse accessors
 /// alone, which tinygltf wants bytes for, stand in extensions.
 std::string readableByTinygltf(std::string_view json);
 

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "scene/obj/number_check.h"
+#include "scene/obj/obj_text.h"
 
 namespace lumi {
 namespace {
@@ -191,6 +192,7 @@ SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<ti
 
 SubdivisionCage parseCage(std::string text, const std::string& where, MessageLog& log) {
     FileWarnings warnings(where, log);
+    text = plainObj(text, [](const std::string&) { return false; });
     checkObjNumbers(text, warnings);
     uncommentTags(text);
     const auto scheme = saidScheme(text).value_or(SubdivisionCage::Scheme::CatmullClark);

@@ -14,6 +14,7 @@
 #include "scene/obj/number_check.h"
 #include "scene/obj/obj_materials.h"
 #include "scene/obj/obj_mesh.h"
+#include "scene/obj/obj_text.h"
 
 namespace lumi {
 namespace {
@@ -38,7 +39,7 @@ public:
         try {
             const std::vector<uint8_t> bytes = readFile(*file, uint64_t(1) << 28);
             digest_ = digest64(bytes, digest_);
-            std::istringstream text(std::string(bytes.begin(), bytes.end()));
+            std::istringstream text(plainMtl({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
             std::string warning, error;
             tinyobj::LoadMtl(byName, materials, &text, &warning, &error);
         } catch (const Error& e) {
@@ -67,9 +68,14 @@ ParsedObj parse(const std::filesystem::path& path, FileWarnings& warnings) {
     checkMemory("reading " + where, bytes.size() * kBytesPerByte);
     ParsedObj parsed;
     parsed.digest = digest64(bytes);
-    checkObjNumbers({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, warnings);
-    std::string lines(bytes.begin(), bytes.end());
+    const auto isThere = [&](const std::string& name) {
+        const std::optional<std::filesystem::path> file = pathInside(path.parent_path(), name);
+        std::error_code ignored;
+        return file && std::filesystem::is_regular_file(*file, ignored);
+    };
+    std::string lines = plainObj({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, isThere);
     bytes = {};
+    checkObjNumbers(lines, warnings);
     uncommentTags(lines);
     parsed.scheme = saidScheme(lines);
     std::istringstream text(std::move(lines));

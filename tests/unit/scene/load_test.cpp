@@ -110,9 +110,23 @@ TEST(LoadScene, ScenesWhereNumbersAreCoarseAreNamed) {
         loadScene(folder / "far.json", log);
         return log.warnings();
     };
+    const auto loadedAtScale = [&](const char* scale) {
+        writeFileAtomically(folder / "small.json",
+                            std::string(R"({"version": 1, "assets": {"b": {"box": {"size": [1, 1, 1]}}}, "instances":
+                                [{"name": "b", "asset": "b", "scale": )") +
+                                scale + R"(}], "environment": {"constant": [1, 1, 1]},
+                                "cameras": {"main": {"eye": [0, 0, 4], "look-at": [0, 0, 0]}}})");
+        MessageLog log;
+        loadScene(folder / "small.json", log);
+        return log.warnings();
+    };
     EXPECT_TRUE(warningsAt("0", "1").empty());
     EXPECT_TRUE(warningsAt("20", "1").empty());
     EXPECT_TRUE(warningsAt("-5000", "10000").empty()) << "coarse, but beside its size it is not";
+    EXPECT_TRUE(loadedAtScale("0.01").empty());
+    const std::vector<std::string> small = loadedAtScale("0.001");
+    ASSERT_EQ(small.size(), 1u);
+    EXPECT_NE(small[0].find("is 0.0017 m in size: rays may start 1.5e-05 m off"), std::string::npos) << small[0];
     const std::vector<std::string> told = warningsAt("-100000", "1");
     ASSERT_EQ(told.size(), 1u);
     EXPECT_EQ(told[0].find("far.json: lies 1e+05 m from the origin"), 0u) << told[0];

@@ -287,8 +287,8 @@ TEST(ObjCage, TheSceneFileHasTheLastWordOnTheScheme) {
     options.subdivision.scheme = SubdivisionScheme::None;
     EXPECT_EQ(loadObj(folder / "a.obj", log, options).triangleCount(), 2);
     options.subdivision.scheme = SubdivisionScheme::Bilinear;
-    for (const Vec3& p : loadObj(folder / "a.obj", log, options).instances.at(0).mesh->positions)
-        EXPECT_NEAR(p.z, p.x * p.y, 1e-6f);
+    const Scene patch = loadObj(folder / "a.obj", log, options);
+    for (const Vec3& p : patch.instances.at(0).mesh->positions) EXPECT_NEAR(p.z, p.x * p.y, 1e-6f);
 }
 
 SubdivisionCage cageWith(const std::string& tags) {
