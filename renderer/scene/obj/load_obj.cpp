@@ -91,7 +91,7 @@ ParsedObj parse(const std::filesystem::path& path, FileWarnings& warnings) {
     }
     std::istringstream told(warning);
     for (std::string line; std::getline(told, line);)
-        if (!line.empty()) warnings.warn(line);
+        if (line.find_first_not_of(" .\t\r") != line.npos) warnings.warn(line);
     const auto isMore = [](const tinyobj::shape_t& shape) {
         return !shape.lines.indices.empty() || !shape.points.indices.empty();
     };
