@@ -77,6 +77,7 @@ private:
         cage_.faceVarying = static_cast<SubdivisionCage::FaceVarying>(pick(6));
         cage_.chaikin = pick(5) == 0;
         cage_.smoothTriangles = pick(5) == 0;
+        if (pick(6) == 0) cage_.scheme = SubdivisionCage::Scheme::Bilinear;
         if (pick(10) == 0) cage_.holes.push_back(static_cast<uint32_t>(pick(static_cast<int>(faces.size()))));
     }
     std::mt19937_64 random_;
