@@ -147,12 +147,16 @@ private:
     int divide(const Range& range, std::array<Range, kWidth>& parts, bool even) {
         parts[0] = range;
         int count = 1;
+        // Near the leaves as many as one node holds stay together: nodes of two or three lights are mostly empty.
+        const uint32_t least = range.size() > kWidth && range.size() <= kWidth * kWidth ? kWidth : 1;
         while (count < kWidth) {
             int worst = -1;
             float cost = -1;
             for (int i = 0; i < count; ++i) {
                 const Range& part = parts[static_cast<size_t>(i)];
-                const float own = part.size() <= 1 ? -1 : even ? static_cast<float>(part.size()) : costOf(part.bounds);
+                const float own = part.size() <= least ? -1
+                                  : even               ? static_cast<float>(part.size())
+                                                       : costOf(part.bounds);
                 if (own > cost) worst = i, cost = own;
             }
             if (worst < 0) break;

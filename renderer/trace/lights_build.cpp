@@ -12,7 +12,7 @@ namespace lumi {
 namespace {
 
 /// What a triangle that shines takes while the lights are built, at most: twice its nodes.
-constexpr uint64_t kBytesATriangle = 800;
+constexpr uint64_t kBytesATriangle = 450;
 
 /// Mean luminance that a triangle emits: its emission texture filtered over the triangle's extent. Triangles in
 /// darkness near light keep a small share, so that no texel with light is out of reach.

@@ -147,7 +147,7 @@ TEST(ManyLights, CountAgainstTheMemoryLimit) {
     const auto posed = tiny.pose();
     Tracer tracer;
     {
-        const MemoryLimit limit(uint64_t(400) << 20);
+        const MemoryLimit limit(uint64_t(300) << 20);
         expectError(ErrorKind::Resources, [&] { tracer.bind(posed); }, {"980000 triangles that shine"});
     }
     EXPECT_FALSE(meets(tracer, Vec3(1, 5, 1), Vec3(0, -1, 0))) << "an empty scene";
