@@ -62,14 +62,16 @@ while IFS= read -r file; do
     render gltf "$name" "$file"
 done < <(find "$assets/gltf" -name '*.gltf' -o -name '*.glb' | sort)
 
-# A cage is shown as its limit surface, with its texture if it has one, under a soft sky.
+# A cage is shown as the surface that it says, else as Catmull-Clark's, with its texture if it has one, under a soft sky.
 while IFS= read -r file; do
     name=$(basename "$file" .obj)
     material='"base-color": [0.55, 0.6, 0.68], "roughness": 0.35'
     texture=${file%/*}/${name%%_*}_texture.png
+    scheme=catmull-clark
+    ! grep -q '^# scheme:' "$file" || scheme=auto
     [ ! -e "$texture" ] || material="\"base-color-texture\": \"$texture\", \"roughness\": 0.5"
     cat >"$out/cage.json" <<JSON
-{"version": 1, "assets": {"cage": {"obj": "$file", "subdivision": "catmull-clark", "rate": 6}},
+{"version": 1, "assets": {"cage": {"obj": "$file", "subdivision": "$scheme", "rate": 6}},
  "materials": {"clay": {$material}}, "instances": [{"name": "cage", "asset": "cage", "material": "clay"}],
  "environment": {"file": "$assets/env/venice_sunset_1k.hdr"}}
 JSON
