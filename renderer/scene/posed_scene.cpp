@@ -123,6 +123,7 @@ void openShutter(const ShutterTimes& times, bool cut, const PosedScene* before, 
                 PosedMotion& motion = motionOf(pose);
                 motion.moves |= track != nullptr;
                 if (track) pose.worldFromObject = track->worldFromObject.front();
+                if (previous) motion.worldFromObjectPrevious = previous->worldFromObject.front();
                 motion.track = std::move(track), motion.previousTrack = std::move(previous);
             }
         },

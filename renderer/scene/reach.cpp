@@ -144,6 +144,7 @@ void warnOfDistance(const Scene& scene, MessageLog& log) {
     const Bounds3 box = scene.restBounds();
     if (box.empty()) return;
     const float distance = std::max(maxComponent(-box.lower), maxComponent(box.upper));
+    if (!(box.radius() > 0) || !isInReach(distance)) return;  // a single place, or what posing will refuse
     const float coarse = 256 * (std::nextafter(distance, kInfinity) - distance), start = std::max(coarse, 0x1p-16f);
     if (start <= kMostOfSize * box.radius()) return;
     const std::string file = std::filesystem::path(scene.path).filename().string();

@@ -144,6 +144,12 @@ private:
     };
 
     void addTriangles(Collected& collected);
+    /// As it is when the shutter opens.
+    Triangle makeTriangle(uint32_t instance, uint32_t primitive) const;
+    /// While the shutter is open, in square metres.
+    float mostArea(const Triangle& triangle) const;
+    /// Of all that it passes while the shutter is open.
+    LightBounds boundsOf(const Triangle& triangle, float intensity) const;
     void addBodies(Collected& collected);
     void addPoints(const PosedScene& posed, Collected& collected);
     void addInfinite(const PosedScene& posed, Collected& collected);

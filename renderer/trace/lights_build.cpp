@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "base/memory.h"
@@ -11,8 +12,29 @@
 namespace lumi {
 namespace {
 
-/// What a triangle that shines takes while the lights are built, at most: twice its nodes.
+/// About what a triangle that shines takes while the lights are built: its entry, its bounds and its part of the tree.
 constexpr uint64_t kBytesATriangle = 450;
+
+/// How many triangles of the instance shine, by their materials.
+size_t emittingTriangles(const InstanceRecord& instance, std::span<const MaterialRecord> materials) {
+    if (instance.body >= 0 || !instance.positions) return 0;
+    if (!instance.triangleMaterial) return materials[instance.material].emits ? instance.triangleCount : 0;
+    std::atomic<size_t> total{0};
+    parallelRanges(instance.triangleCount, 1 << 16, [&](int64_t begin, int64_t end) {
+        size_t here = 0;
+        for (int64_t k = begin; k < end; ++k)
+            here += materials[instance.materialOf(static_cast<uint32_t>(k))].emits ? 1 : 0;
+        total += here;
+    });
+    return total;
+}
+
+/// Moments by which the instance moves while the shutter is open; none if it stands still.
+size_t momentsOf(const InstanceRecord& instance) {
+    return instance.track ? std::max(instance.track->worldFromObject.size(), instance.track->deformed.size()) : 0;
+}
+
+float momentAt(size_t moment, size_t moments) { return static_cast<float>(moment) / static_cast<float>(moments - 1); }
 
 /// Mean luminance that a triangle emits: its emission texture filtered over the triangle's extent. Triangles in
 /// darkness near light keep a small share, so that no texel with light is out of reach.
@@ -100,82 +122,108 @@ LightBounds bodyBounds(const LightShape& shape) {
 
 void Lights::addTriangles(Collected& collected) {
     const std::vector<InstanceRecord>& instances = tables_->instances;
+    const bool anyEmits = std::any_of(tables_->materials.begin(), tables_->materials.end(),
+                                      [](const MaterialRecord& material) { return material.emits; });
     firstTriangle_.assign(instances.size(), kNone);
     firstEntry_.assign(instances.size(), kNone);
-    // Rows of triangles that may emit, by instance.
-    size_t total = 0;
-    for (size_t i = 0; i < instances.size(); ++i) {
-        const InstanceRecord& r = instances[i];
-        if (r.body >= 0 || !r.positions) continue;
-        bool emits = !r.triangleMaterial && tables_->materials[r.material].emits;
-        if (r.triangleMaterial)
-            for (const MaterialRecord& m : tables_->materials) emits |= m.emits;
-        if (!emits) continue;
-        firstTriangle_[i] = static_cast<uint32_t>(total);
-        total += r.triangleCount;
+    // Rows of the triangles of instances that emit.
+    size_t rows = 0, emitting = 0;
+    for (size_t i = 0; anyEmits && i < instances.size(); ++i) {
+        const size_t here = emittingTriangles(instances[i], tables_->materials);
+        if (here == 0) continue;
+        firstTriangle_[i] = static_cast<uint32_t>(rows);
+        rows += instances[i].triangleCount, emitting += here;
     }
-    checkMemory(fmt::format("choosing among {} triangles that shine", total), total * kBytesATriangle);
-    triangleEntry_.assign(total, kNone);
-    triangles_.assign(total, {});
-    std::vector<float> intensity(total, 0);
-    for (size_t i = 0; i < instances.size(); ++i) {
-        if (firstTriangle_[i] == kNone) continue;
-        const InstanceRecord& r = instances[i];
-        parallelRanges(r.triangleCount, 1024, [&, i](int64_t begin, int64_t end) {
-            for (int64_t k = begin; k < end; ++k) {
-                const auto primitive = static_cast<uint32_t>(k);
-                const MaterialRecord& material = tables_->materials[r.materialOf(primitive)];
-                if (!material.emits) continue;
-                const UVec3 t = r.triangles[primitive];
-                Vec3 p[3] = {r.positions[t.x], r.positions[t.y], r.positions[t.z]};
-                if (!r.inWorld)
-                    for (Vec3& corner : p) corner = transformPoint(r.worldFromObject, corner);
-                Triangle& triangle = triangles_[firstTriangle_[i] + primitive];
-                triangle.corner = p[0], triangle.edge1 = p[1] - p[0], triangle.edge2 = p[2] - p[0];
-                triangle.radiance = material.emission;
-                triangle.instance = static_cast<uint32_t>(i), triangle.primitive = primitive;
-                triangle.offset = r.objectScale * 0x1p-18f;
-                // Or in the vertices' colours, which an unlit surface shines in, or through a varnish.
-                const bool textured = (material.textures & MaterialRecord::kEmission) || material.source->hasAlpha() ||
-                                      (material.unlit && r.colours) || material.coatedEmission;
-                const auto mark = [&](bool on, uint32_t flag) { triangle.flags |= on ? flag : 0u; };
-                mark(material.doubleSided, Triangle::kDoubleSided), mark(textured, Triangle::kTextured);
-                mark(r.mirrored, Triangle::kMirrored), mark(r.track != nullptr, Triangle::kMoves);
-                const float area = 0.5f * glm::length(glm::cross(triangle.edge1, triangle.edge2));
-                const float most = area * triangleLuminance(material, r, t);
-                intensity[firstTriangle_[i] + primitive] = most > 0 && std::isfinite(most) ? most : 0;
-            }
-        });
-    }
+    // The lights of the frame before go as these come.
+    const uint64_t needed = emitting * kBytesATriangle + rows * (sizeof(float) + sizeof(uint32_t));
+    const uint64_t held = byteCount() - environment_.byteCount();
+    checkMemory(fmt::format("choosing among {} triangles that shine", emitting), needed - std::min(needed, held));
+
+    const auto forEachRow = [&](auto&& visit) {
+        for (size_t i = 0; i < instances.size(); ++i)
+            if (firstTriangle_[i] != kNone)
+                parallelRanges(instances[i].triangleCount, 1024, [&, i](int64_t begin, int64_t end) {
+                    for (int64_t k = begin; k < end; ++k)
+                        visit(firstTriangle_[i] + static_cast<size_t>(k), static_cast<uint32_t>(i),
+                              static_cast<uint32_t>(k));
+                });
+    };
+    std::vector<float> intensity(rows, 0);
+    forEachRow([&](size_t row, uint32_t instance, uint32_t primitive) {
+        const InstanceRecord& r = instances[instance];
+        const MaterialRecord& material = tables_->materials[r.materialOf(primitive)];
+        if (!material.emits) return;
+        const float most =
+            mostArea(makeTriangle(instance, primitive)) * triangleLuminance(material, r, r.triangles[primitive]);
+        intensity[row] = most > 0 && std::isfinite(most) ? most : 0;
+    });
+
     const auto shining =
         static_cast<size_t>(std::count_if(intensity.begin(), intensity.end(), [](float x) { return x > 0; }));
-    entries_.reserve(shining), collected.weights.reserve(shining), collected.bounds.reserve(shining);
-    for (size_t k = 0; k < total; ++k) {
-        if (intensity[k] <= 0) continue;
-        const size_t entry = entries_.size();
-        triangleEntry_[k] = static_cast<uint32_t>(entry);
-        entries_.push_back({Kind::Triangle, static_cast<uint32_t>(entry)});
-        triangles_[entry] = triangles_[k];
-        const Triangle& t = triangles_[entry];
-        const InstanceRecord& r = instances[t.instance];
-        const bool bothSides = tables_->materials[r.materialOf(t.primitive)].doubleSided;
-        collected.weights.push_back(kPi * intensity[k] * (bothSides ? 2 : 1));
-        LightBounds bounds = triangleBounds(t.corner, t.edge1, t.edge2, r.mirrored, bothSides, intensity[k]);
-        // Wherever it comes while the shutter is open.
-        const size_t moments = !r.track ? 0 : std::max(r.track->worldFromObject.size(), r.track->deformed.size());
-        for (size_t m = 1; m < moments; ++m) {
-            const Triangle later = triangleAt(t, static_cast<float>(m) / static_cast<float>(moments - 1));
-            bounds = swept(bounds, triangleBounds(later.corner, later.edge1, later.edge2, r.mirrored, bothSides, 0));
-        }
-        collected.bounds.push_back(bounds);
+    triangleEntry_.assign(rows, kNone);
+    entries_.reserve(shining);
+    for (size_t row = 0; row < rows; ++row) {
+        if (intensity[row] <= 0) continue;
+        const auto entry = static_cast<uint32_t>(entries_.size());
+        triangleEntry_[row] = entry;
+        entries_.push_back({Kind::Triangle, entry});
     }
-    triangles_.resize(shining);
+    triangles_ = std::vector<Triangle>(shining);
+    collected.weights.resize(shining), collected.bounds.resize(shining);
+    forEachRow([&](size_t row, uint32_t instance, uint32_t primitive) {
+        const uint32_t entry = triangleEntry_[row];
+        if (entry == kNone) return;
+        triangles_[entry] = makeTriangle(instance, primitive);
+        const bool bothSides = triangles_[entry].flags & Triangle::kDoubleSided;
+        collected.weights[entry] = kPi * intensity[row] * (bothSides ? 2 : 1);
+        collected.bounds[entry] = boundsOf(triangles_[entry], intensity[row]);
+    });
     // Most instances emit with all their triangles, which then need no table.
     for (size_t i = 0; i < instances.size(); ++i) {
         if (firstTriangle_[i] == kNone) continue;
         const auto begin = triangleEntry_.begin() + firstTriangle_[i], end = begin + instances[i].triangleCount;
         if (std::find(begin, end, kNone) == end) firstEntry_[i] = begin == end ? kNone : *begin;
     }
+}
+
+Lights::Triangle Lights::makeTriangle(uint32_t instance, uint32_t primitive) const {
+    const InstanceRecord& r = tables_->instances[instance];
+    const MaterialRecord& material = tables_->materials[r.materialOf(primitive)];
+    const UVec3 t = r.triangles[primitive];
+    Vec3 p[3] = {r.positions[t.x], r.positions[t.y], r.positions[t.z]};
+    if (!r.inWorld)
+        for (Vec3& corner : p) corner = transformPoint(r.worldFromObject, corner);
+    Triangle triangle;
+    triangle.corner = p[0], triangle.edge1 = p[1] - p[0], triangle.edge2 = p[2] - p[0];
+    triangle.radiance = material.emission;
+    triangle.instance = instance, triangle.primitive = primitive;
+    triangle.offset = r.objectScale * 0x1p-18f;
+    // Or in the vertices' colours, which an unlit surface shines in, or through a varnish.
+    const bool textured = (material.textures & MaterialRecord::kEmission) || material.source->hasAlpha() ||
+                          (material.unlit && r.colours) || material.coatedEmission;
+    const auto mark = [&](bool on, uint32_t flag) { triangle.flags |= on ? flag : 0u; };
+    mark(material.doubleSided, Triangle::kDoubleSided), mark(textured, Triangle::kTextured);
+    mark(r.mirrored, Triangle::kMirrored), mark(r.track != nullptr, Triangle::kMoves);
+    return triangle;
+}
+
+float Lights::mostArea(const Triangle& triangle) const {
+    const auto areaOf = [](const Triangle& t) { return 0.5f * glm::length(glm::cross(t.edge1, t.edge2)); };
+    float most = areaOf(triangle);
+    const size_t moments = momentsOf(tables_->instances[triangle.instance]);
+    for (size_t m = 1; m < moments; ++m) most = std::max(most, areaOf(triangleAt(triangle, momentAt(m, moments))));
+    return most;
+}
+
+LightBounds Lights::boundsOf(const Triangle& triangle, float intensity) const {
+    const bool mirrored = triangle.flags & Triangle::kMirrored, bothSides = triangle.flags & Triangle::kDoubleSided;
+    const auto boundsAt = [&](const Triangle& t) {
+        return triangleBounds(t.corner, t.edge1, t.edge2, mirrored, bothSides, intensity);
+    };
+    LightBounds bounds = boundsAt(triangle);
+    const size_t moments = momentsOf(tables_->instances[triangle.instance]);
+    for (size_t m = 1; m < moments; ++m) bounds = swept(bounds, boundsAt(triangleAt(triangle, momentAt(m, moments))));
+    return bounds;
 }
 
 void Lights::addBodies(Collected& collected) {

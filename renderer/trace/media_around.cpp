@@ -53,9 +53,7 @@ Vec3 latticeDirection(int k) {
     return {r * std::cos(angle), y, r * std::sin(angle)};
 }
 
-}  // namespace
-
-MediumStack mediaAround(const TraceScene& scene, const Vec3& place, float time) {
+MediumStack mediaAt(const TraceScene& scene, const Vec3& place, float time) {
     std::map<std::vector<uint32_t>, int> votes;
     for (int k = 0; k < kDirections; ++k) {
         const Crossings found = crossingsAlong(scene, place, latticeDirection(k), time);
@@ -67,6 +65,18 @@ MediumStack mediaAround(const TraceScene& scene, const Vec3& place, float time) 
         std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     if (most == votes.end() || most->second < kLeastAgreeing) return media;
     for (auto solid = most->first.rbegin(); solid != most->first.rend(); ++solid) media.enter(*solid);
+    return media;
+}
+
+}  // namespace
+
+MediumStack mediaAround(const TraceScene& scene, std::span<const Vec3> places, float time) {
+    MediumStack media;
+    for (size_t i = 0; i < places.size(); ++i) {
+        const MediumStack here = mediaAt(scene, places[i], time);
+        if (i > 0 && here != media) return {};
+        media = here;
+    }
     return media;
 }
 

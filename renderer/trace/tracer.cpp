@@ -77,6 +77,18 @@ void gatherTexels(std::span<const TextureView> textures) {
                                   size_t(4) * static_cast<size_t>(level.width) * static_cast<size_t>(level.height));
 }
 
+/// Places that speak for all from which the camera's rays come. Lenses are small beside the solids that they are in.
+std::vector<Vec3> beginnings(const CameraPose& camera) {
+    std::vector<Vec3> places = {camera.position()};
+    if (camera.projection == Projection::Perspective) return places;
+    const float halfWidth =
+        camera.halfHeight * static_cast<float>(camera.extent.width) / static_cast<float>(camera.extent.height);
+    for (const float x : {-halfWidth, halfWidth})
+        for (const float y : {-camera.halfHeight, camera.halfHeight})
+            places.push_back(transformPoint(camera.worldFromCamera, Vec3(x, y, 0)));
+    return places;
+}
+
 std::shared_ptr<const PosedScene> emptyScene() {
     auto posed = std::make_shared<PosedScene>();
     posed->scene = std::make_shared<const Scene>();
@@ -96,8 +108,8 @@ struct Tracer::Impl {
         scene.lights.build(*scene.posed, scene.tables, stop);
     }
     /// The solids that paths from there begin in, as far as they matter.
-    MediumStack aroundCamera(const Vec3& place, float time) const {
-        return scene.tables.absorbs ? mediaAround(scene, place, time) : MediumStack();
+    MediumStack aroundCamera(std::span<const Vec3> places, float time) const {
+        return scene.tables.absorbs ? mediaAround(scene, places, time) : MediumStack();
     }
     void add(const TraceCounts& counts) {
         cameraRays.fetch_add(counts.cameraRays, std::memory_order_relaxed);
@@ -130,6 +142,7 @@ void Tracer::bind(std::shared_ptr<const PosedScene> posed, std::stop_token stop)
         // What did not fit leaves nothing behind: an empty scene that can be traced.
         scene.posed = emptyScene();
         scene.embree.bind(*scene.posed);
+        scene.lights = Lights();
         impl_->makeTables();
         throw;
     }
@@ -163,7 +176,7 @@ bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_t
     PathSettings path = sampling.path;
     if (extra.empty() && isGeometryOnly(signals.available())) path.maxDepth = 0;  // no light is asked for
     const Integrator integrator(impl_->scene, path, sampling.seed, observers,
-                                impl_->aroundCamera(sampling.camera.position(), 0));
+                                impl_->aroundCamera(beginnings(sampling.camera), 0));
 
     static_assert(SignalsObserver::kTile * SignalsObserver::kTile <= PathBatch::kMost &&
                   SignalsObserver::kTile <= kMostInStartRow);
@@ -198,10 +211,12 @@ bool Tracer::Impl::traceBatches(std::span<const PathStart> starts, std::span<con
                                 const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
                                 std::span<PathObserver* const> observers, const std::stop_token& stop,
                                 std::span<const Hit> firstHits) {
-    // Cameras are small beside the solids that they are in: the first ray speaks for all.
-    const bool fromCamera = !starts.empty() && starts.front().ray.fromCamera;
-    const MediumStack around =
-        fromCamera ? aroundCamera(starts.front().ray.origin, starts.front().ray.time) : MediumStack();
+    MediumStack around;
+    if (!starts.empty() && starts.front().ray.fromCamera) {
+        const Vec3 places[] = {starts.front().ray.origin, starts[starts.size() / 2].ray.origin,
+                               starts.back().ray.origin};
+        around = aroundCamera(places, starts.front().ray.time);
+    }
     const Integrator integrator(scene, settings, seed, observers, around);
     const auto count = static_cast<int64_t>(starts.size());
     std::atomic<int64_t> done{0};

@@ -28,7 +28,13 @@ bool isNumber(std::string_view word) {
     return code == std::errc() && end == word.data() + word.size();
 }
 
+bool isComment(std::string_view line) {
+    const size_t begin = line.find_first_not_of(kSpace);
+    return begin != line.npos && line[begin] == '#';
+}
+
 /// Calls visit(line, result) for the whole lines of `text`, without their ends, to append what takes their place.
+/// Comments end with their line.
 template <class Visit>
 std::string mapLines(std::string_view text, Visit&& visit) {
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
@@ -36,45 +42,69 @@ std::string mapLines(std::string_view text, Visit&& visit) {
     result.reserve(text.size() + 1);
     size_t continued = 0;
     while (!text.empty()) {
-        const size_t end = std::min(text.find('\n'), text.size());
-        std::string_view line = text.substr(0, end);
-        text.remove_prefix(std::min(end + 1, text.size()));
-        if (line.ends_with('\r')) line.remove_suffix(1);
-        if (line.ends_with('\\') && !text.empty()) {
+        const size_t end = std::min(text.find_first_of("\r\n"), text.size());
+        const std::string_view line = text.substr(0, end);
+        text.remove_prefix(end);
+        text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<size_t>(1, text.size()));
+        if (line.ends_with('\\') && !text.empty() && (continued > 0 || !isComment(line))) {
             whole += line.substr(0, line.size() - 1);
             whole += ' ';
             ++continued;
             continue;
         }
-        if (continued > 0) line = whole += line;
-        visit(line, result);
+        visit(continued > 0 ? std::string_view(whole += line) : line, result);
         result.append(continued + 1, '\n');
         whole.clear(), continued = 0;
     }
     return result;
 }
 
-/// A name as tinyobj takes it for one: spaces and backslashes escaped.
+/// A name as tinyobj takes it for one: spaces escaped.
 std::string escaped(std::string_view name) {
     std::string result;
     for (const char c : name) {
         if (c == ' ' || c == '\t') result += '\\';
-        result += c == '\\' ? '/' : c;
+        result += c;
     }
     return result;
 }
 
-void addMaterialFiles(std::string_view line, const std::function<bool(const std::string&)>& exists,
+/// The rest of a line as one name of a file, with slashes; a backslash before a space means the space.
+std::string nameOf(std::string_view words) {
+    std::string name;
+    for (size_t i = 0; i < words.size(); ++i) {
+        if (words[i] != '\\') name += words[i];
+        else if (i + 1 == words.size() || words[i + 1] != ' ') name += '/';
+    }
+    return name;
+}
+
+/// `names`: what follows the `mtllib`. The lines of several files end with a carriage return, so that line feeds count
+/// the lines of the file.
+void addMaterialFiles(std::string_view names, const std::function<bool(const std::string&)>& exists,
                       std::string& result) {
-    const std::vector<std::string_view> words = wordsOf(line);
-    if (words.size() < 2) return;
-    std::string whole(words[1].data(), words.back().data() + words.back().size());
-    std::replace(whole.begin(), whole.end(), '\\', '/');
-    if (words.size() == 2 || exists(whole)) {
+    const std::vector<std::string_view> words = wordsOf(names);
+    if (words.empty()) return;
+    const std::string whole =
+        nameOf({words[0].data(), static_cast<size_t>(&words.back().back() + 1 - words[0].data())});
+    if (exists(whole)) {
         result += "mtllib " + escaped(whole);
         return;
     }
-    for (size_t i = 1; i < words.size(); ++i) result += (i > 1 ? "\nmtllib " : "mtllib ") + escaped(words[i]);
+    std::string name;
+    const char* separator = "mtllib ";
+    for (const std::string_view word : words) {
+        if (word.starts_with('#')) break;
+        name += word;
+        if (word.ends_with('\\')) {
+            name += ' ';
+            continue;
+        }
+        result += separator + escaped(nameOf(name));
+        separator = "\rmtllib ";
+        name.clear();
+    }
+    if (!name.empty()) result += separator + escaped(nameOf(name.substr(0, name.size() - 1)));
 }
 
 /// How many words follow an option of a texture, at most; -1 for what is none.
@@ -110,8 +140,10 @@ void addTexture(std::string_view line, std::string& result) {
 
 std::string plainObj(std::string_view text, const std::function<bool(const std::string&)>& exists) {
     return mapLines(text, [&](std::string_view line, std::string& result) {
-        const size_t begin = line.find_first_not_of(kSpace);
-        if (begin != line.npos && line.substr(begin).starts_with("mtllib")) addMaterialFiles(line, exists, result);
+        constexpr std::string_view kKeyword = "mtllib";
+        const std::string_view begun = line.substr(std::min(line.find_first_not_of(kSpace), line.size()));
+        const bool named = begun.starts_with(kKeyword) && begun.find_first_of(kSpace) == kKeyword.size();
+        if (named) addMaterialFiles(begun.substr(kKeyword.size()), exists, result);
         else result += line;
     });
 }

@@ -92,6 +92,25 @@ TEST(Absorption, BeginsWhereTheCameraIs) {
     expectSeen(seenFromInside(pool, Vec3(0.1f, 0, 0.1f), up), 0.25 * 0.25);
 }
 
+// What the plane of an orthographic camera cuts is entered where it begins in front of it.
+TEST(Absorption, BeginsWhereAllOfAnOrthographicCameraIs) {
+    Camera camera = lookFrom(Vec3(0), Vec3(0, 0, -1), 45);
+    camera.projection = Projection::Orthographic;
+    camera.yMag = 1;
+    const auto corner = [&](float boxSize) {
+        TinyScene tiny;
+        tiny.add(boxMesh(Vec3(boxSize, boxSize, 1)), tinted());
+        tiny.scene.environment.constant = Vec3(1);
+        Tracer tracer;
+        tracer.bind(tiny.pose());
+        Signals frame;
+        EXPECT_TRUE(tracer.sample(frameOf(camera, {16, 16}, 64, plainPaths(8), {Signal::Noisy}, 1), frame));
+        return frame[Signal::Noisy].at(0, 0, 0);
+    };
+    EXPECT_NEAR(corner(1), 1, 1e-3) << "beside the box";
+    EXPECT_NEAR(corner(4), 0.25, 2e-3) << "half a metre inside it";
+}
+
 TEST(Absorption, SolidsAreLeftInAnyOrder) {
     MediumStack media;
     EXPECT_EQ(media.innermost(), MediumStack::kNone);

@@ -6,7 +6,7 @@
 
 #include "math/hash.h"
 #include "support/image_tests.h"
-#include "support/transport_scene.h"
+#include "support/light_scene.h"
 
 namespace lumi {
 namespace {
@@ -154,8 +154,8 @@ TEST(Shutter, ConvergesToTheMeanOfPosedFrames) {
     }
 }
 
-/// Mean of the picture of a shining card whose scale goes straight from one to the other while the shutter is open.
-double meanOfScaledCard(const Vec3& from, const Vec3& to) {
+/// A shining card whose scale goes straight from one to the other in the first second.
+TinyScene scaledCard(const Vec3& from, const Vec3& to) {
     TinyScene tiny;
     Material glow = lambert(0);
     glow.emission = Vec3(1), glow.doubleSided = true;
@@ -166,8 +166,13 @@ double meanOfScaledCard(const Vec3& from, const Vec3& to) {
     animation.duration = 1, animation.loop = false;
     animation.channels.push_back(channel(node, AnimatedProperty::Scale, 3, {from.x, from.y, from.z, to.x, to.y, to.z}));
     tiny.scene.animations.push_back(animation);
+    return tiny;
+}
+
+/// Mean of its picture while the shutter is open.
+double meanOfScaledCard(const Vec3& from, const Vec3& to) {
     Tracer tracer;
-    tracer.bind(tiny.pose({0, 1, 0}));
+    tracer.bind(scaledCard(from, to).pose({0, 1, 0}));
     FrameSampling sampling =
         frameOf(lookFrom(Vec3(0, 0, 2), Vec3(0), 60), {32, 32}, 256, plainPaths(1), {Signal::Noisy}, 3);
     sampling.shutterOpen = true;
@@ -187,6 +192,26 @@ TEST(Shutter, ThingsGrowFromNothingAndVanish) {
     EXPECT_NEAR(meanOfScaledCard(Vec3(1), Vec3(0, 1, 1)) / whole, 0.5, 0.005);
     EXPECT_NEAR(meanOfScaledCard(Vec3(1, 1, 0), Vec3(1)) / whole, 1, 0.005) << "flat as it is";
     EXPECT_EQ(meanOfScaledCard(Vec3(0), Vec3(0)), 0);
+}
+
+TEST(Shutter, LightsThatGrowAreChosenByTheMostThatTheyShine) {
+    TinyScene tiny = scaledCard(Vec3(0), Vec3(1));
+    Material glow = lambert(0);
+    glow.emission = Vec3(1), glow.doubleSided = true;
+    tiny.add(rectangleMesh(1, 1, Facing::Z), glow);
+    TraceScene scene;
+    bindTo(scene, tiny.pose({0, 1, 0}));
+    ASSERT_EQ(scene.lights.count(), 4u);
+    const LightReceiver receiver{Vec3(0, 0, 5), Vec3(0, 0, -1), 0.9f, LightReceiver::Facing::Front,
+                                 LightSampling::Power};
+    for (uint32_t i = 0; i < 4; ++i) EXPECT_NEAR(scene.lights.pickProbability(receiver, i), 0.25f, 1e-5f);
+}
+
+TEST(Shutter, WhatIsFlatAtTheOpeningStandsStillWhileTimeDoes) {
+    TinyScene tiny = scaledCard(Vec3(0), Vec3(1));
+    const auto posed = tiny.pose({0, 1, 0});
+    for (const PosedInstance& instance : posed->instances)
+        EXPECT_EQ(instance.worldFromObject, instance.worldFromObjectPrevious());
 }
 
 TEST(Shutter, StrategiesAgreeWhileLightsMove) {

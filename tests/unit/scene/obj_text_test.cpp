@@ -30,14 +30,20 @@ TEST(ObjText, ContinuedLinesAreWholeAndOthersKeepTheirNumber) {
     EXPECT_EQ(obj("f 1 2 \\\n3 4\nv 1 2 3\n"), "f 1 2  3 4\n\nv 1 2 3\n");
     EXPECT_EQ(obj("f 1\\\r\n2\\\r\n3\r\n"), "f 1 2 3\n\n\n");
     EXPECT_EQ(obj("f 1\\"), "f 1\\\n") << "nothing follows";
+    EXPECT_EQ(obj(" # C:\\meshes\\\nv 1 2 3\n"), " # C:\\meshes\\\nv 1 2 3\n") << "comments end with their line";
+    EXPECT_EQ(obj("v 0 0 0\rv 1 0 0\r"), "v 0 0 0\nv 1 0 0\n");
 }
 
 TEST(ObjText, AByteOrderMarkIsNoWord) { EXPECT_EQ(obj("\xef\xbb\xbfmtllib a.mtl\n"), "mtllib a.mtl\n"); }
 
 TEST(ObjText, EachMaterialFileHasALine) {
-    EXPECT_EQ(obj("mtllib a.mtl  b.mtl\n"), "mtllib a.mtl\nmtllib b.mtl\n");
+    EXPECT_EQ(obj("mtllib a.mtl  b.mtl # both\n"), "mtllib a.mtl\rmtllib b.mtl\n");
     EXPECT_EQ(obj("mtllib my own.mtl \n", "my own.mtl"), "mtllib my\\ own.mtl\n");
+    EXPECT_EQ(obj("mtllib my\\ own.mtl\n", "my own.mtl"), "mtllib my\\ own.mtl\n");
+    EXPECT_EQ(obj("mtllib my\\ own.mtl b.mtl\n"), "mtllib my\\ own.mtl\rmtllib b.mtl\n");
+    EXPECT_EQ(obj("mtllib a #1.mtl\n", "a #1.mtl"), "mtllib a\\ #1.mtl\n");
     EXPECT_EQ(obj("mtllib .\\sub\\a.mtl\n"), "mtllib ./sub/a.mtl\n");
+    EXPECT_EQ(obj("mtllibrary a.mtl\n"), "mtllibrary a.mtl\n");
 }
 
 TEST(ObjText, MaterialsAreCompleted) {
