@@ -1,6 +1,7 @@
 #include "scene/gltf/meshes.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <tuple>
 
@@ -12,6 +13,7 @@
 #include "scene/gltf/counts.h"
 #include "scene/gltf/primitive.h"
 #include "scene/gltf/values.h"
+#include "scene/material_textures.h"
 #include "scene/mesh_edit.h"
 
 namespace lumi::gltf {
@@ -125,6 +127,21 @@ private:
             checkMemory("the geometry of " + path, std::max(needed, 2 * mesh.triangles.size()) * kTriangleBytes);
         mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
         mesh.triangleMaterial.resize(mesh.triangles.size(), static_cast<uint32_t>(material));
+        warnOfMissingUv(mesh, materials_[static_cast<size_t>(material)], uvSets, path);
+    }
+
+    void warnOfMissingUv(const Mesh& mesh, const Material& material, const UvSets& uvSets,
+                         const std::string& path) const {
+        for (const int set : {0, 1}) {
+            const auto liesOverIt = [&](const auto texture) {
+                return (material.*texture) && (material.*texture).uvSet == set;
+            };
+            if (mesh.uv[set].empty() &&
+                std::any_of(std::begin(kMaterialTextures), std::end(kMaterialTextures), liesOverIt))
+                document_.warn(path + ": textures of the material \"" + material.name + "\" lie over TEXCOORD_" +
+                               std::to_string(uvSets[static_cast<size_t>(set)]) +
+                               ", which is missing; they show one texel each");
+        }
     }
 
     /// The part that holds these vertices, if its tangents may follow the set `tangents` too (-1: it needs none); else

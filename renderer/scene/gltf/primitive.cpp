@@ -37,11 +37,19 @@ public:
     std::vector<Vec4> readColours(const std::map<std::string, int>& attributes) const {
         const int accessor = find(attributes, "COLOR_0");
         if (accessor < 0) return {};
-        if (componentCount(document_, accessor, path_ + "/COLOR_0") == 4) return read<Vec4>(attributes, "COLOR_0");
-        const std::vector<Vec3> rgb = read<Vec3>(attributes, "COLOR_0");
+        const float most = mostOfPlainIntegers(accessor);
+        if (most > 1)
+            document_.warn(path_ + "/COLOR_0: integers that are not marked as normalized; read as if they were");
         std::vector<Vec4> colours;
-        colours.reserve(rgb.size());
-        for (const Vec3& c : rgb) colours.emplace_back(c, 1.0f);
+        if (componentCount(document_, accessor, path_ + "/COLOR_0") == 4) {
+            colours = read<Vec4>(attributes, "COLOR_0");
+        } else {
+            const std::vector<Vec3> rgb = read<Vec3>(attributes, "COLOR_0");
+            colours.reserve(rgb.size());
+            for (const Vec3& c : rgb) colours.emplace_back(c, most);
+        }
+        if (most > 1)
+            for (Vec4& c : colours) c /= most;
         return colours;
     }
 
@@ -61,6 +69,16 @@ public:
     }
 
 private:
+    /// What 1 would be if the accessor's integers, which are not normalised, were; 1 of all others.
+    float mostOfPlainIntegers(int index) const {
+        const std::vector<tinygltf::Accessor>& accessors = document_.model().accessors;
+        if (static_cast<size_t>(index) >= accessors.size()) return 1;  // refused where it is read
+        const tinygltf::Accessor& accessor = accessors[static_cast<size_t>(index)];
+        if (accessor.normalized) return 1;
+        if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return 255;
+        return accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? 65535.0f : 1.0f;
+    }
+
     const DecodedElements* decoded(const std::string& name) const { return draco_ ? draco_->find(name) : nullptr; }
 
     void expectLength(size_t length, const std::string& name) const {

@@ -41,6 +41,22 @@ TEST(GltfAccessor, NormalisedIntegers) {
     EXPECT_NEAR(meshOf(scene).colours[2].w, 128.0f / 255, 1e-6f);
 }
 
+TEST(GltfAccessor, ColoursOfPlainIntegersAreReadAsNormalised) {
+    for (const int components : {3, 4}) {
+        GltfBuilder file;
+        file.triangle();
+        const std::vector<uint16_t> values(3 * static_cast<size_t>(components), 13107);
+        file.primitive()["attributes"]["COLOR_0"] =
+            file.accessor(values, components == 3 ? "VEC3" : "VEC4", components, 5123);
+        MessageLog log;
+        const Scene scene = file.load(log);
+        EXPECT_NEAR(meshOf(scene).colours[0].x, 0.2f, 1e-6f);
+        EXPECT_NEAR(meshOf(scene).colours[2].w, components == 3 ? 1 : 0.2f, 1e-6f);
+        ASSERT_EQ(log.warnings().size(), 1u);
+        EXPECT_NE(log.warnings()[0].find("/attributes/COLOR_0: integers"), std::string::npos) << log.warnings()[0];
+    }
+}
+
 TEST(GltfAccessor, QuantizedPositionsAndSignedNormals) {
     GltfBuilder file;
     const int p = file.accessor<int16_t>({0, 0, 0, 0, 100, 0, 0, 0, 0, 50, 0, 0}, "VEC3", 4, 5122);

@@ -186,6 +186,7 @@ TEST(GltfErrors, MissingAndDamagedTexturesAreWarnings) {
         file.json["textures"] = {{{"source", 0}}};
         file.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
         file.primitive()["material"] = 0;
+        file.primitive()["attributes"]["TEXCOORD_0"] = file.floats({0, 0, 1, 0, 0, 1}, "VEC2", 2);
         writeFileAtomically(folder / "damaged.png", std::string_view("not an image"));
         writeFileAtomically(folder / "a.glb", file.glb());
         MessageLog log;

@@ -218,6 +218,7 @@ TEST(GltfRules, DataWithoutAKindAreBytes) {
     file.json["images"] = {{{"uri", "data:text/plain," + std::string(500, 'A')}}};
     file.json["textures"] = {{{"source", 0}}};
     file.json["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+    file.primitive()["attributes"]["TEXCOORD_0"] = file.floats({0, 0, 1, 0, 0, 1}, "VEC2", 2);
     file.load(log);
     ASSERT_EQ(log.warnings().size(), 1u);
     EXPECT_NE(log.warnings()[0].find("an unsupported kind of data URI, " + shown), std::string::npos);

@@ -55,6 +55,18 @@ TEST(GltfUvSets, AThirdIsReported) {
     EXPECT_EQ(firstUv(scene, scene.materials[0].baseColorTexture), Vec2(1)) << "the first in use stands in";
 }
 
+TEST(GltfUvSets, OneThatIsMissingIsReported) {
+    GltfBuilder file;
+    build(file, {0, 1});
+    file.primitive()["attributes"].erase("TEXCOORD_1");
+    file.json["materials"][0]["name"] = "shown";
+    MessageLog log;
+    file.load(log);
+    ASSERT_EQ(log.warnings().size(), 1u);
+    for (const char* part : {"/meshes/0/primitives/0", "\"shown\"", "TEXCOORD_1", "missing"})
+        EXPECT_NE(log.warnings()[0].find(part), std::string::npos) << log.warnings()[0];
+}
+
 TEST(GltfUvSets, PrimitivesOverTheSameVerticesMayUseDifferentSets) {
     GltfBuilder file;
     build(file, {2});
