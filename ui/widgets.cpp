@@ -223,27 +223,32 @@ size_t characterBoundary(const std::string& text, size_t at) {
     return at;
 }
 
+/// The text itself if it fits, else shorter(n) for the most bytes n that fit.
+template <class Shorter>
+std::string longestThatFits(const std::string& text, float width, Shorter&& shorter) {
+    const auto fits = [&](const std::string& s) { return ImGui::CalcTextSize(s.c_str()).x <= width; };
+    if (fits(text)) return text;
+    size_t kept = 0, tooMuch = text.size();
+    while (tooMuch - kept > 1) {
+        const size_t middle = kept + (tooMuch - kept) / 2;
+        (fits(shorter(middle)) ? kept : tooMuch) = middle;
+    }
+    return kept > 0 ? shorter(kept) : "…";
+}
+
 }  // namespace
 
 std::string shortened(const std::string& text, float width) {
-    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
-    for (size_t kept = text.size() - 1; kept > 0; --kept) {
-        const std::string shorter = text.substr(0, characterBoundary(text, kept)) + "…";
-        if (ImGui::CalcTextSize(shorter.c_str()).x <= width) return shorter;
-    }
-    return "…";
+    return longestThatFits(text, width,
+                           [&](size_t kept) { return text.substr(0, characterBoundary(text, kept)) + "…"; });
 }
 
 std::string elided(const std::string& text, float width) {
-    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
-    for (size_t removed = 2; removed < text.size(); ++removed) {
-        const size_t kept = text.size() - removed;
+    return longestThatFits(text, width, [&](size_t kept) {
         const size_t head = characterBoundary(text, kept / 2),
                      tail = characterBoundary(text, text.size() - (kept - kept / 2));
-        const std::string shorter = text.substr(0, head) + "…" + text.substr(tail);
-        if (ImGui::CalcTextSize(shorter.c_str()).x <= width) return shorter;
-    }
-    return "…";
+        return text.substr(0, head) + "…" + text.substr(tail);
+    });
 }
 
 }  // namespace lumi

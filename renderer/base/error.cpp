@@ -1,5 +1,7 @@
 #include "base/error.h"
 
+#include "base/message_text.h"
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -8,15 +10,10 @@
 namespace lumi {
 namespace {
 
-/// Names and values come from files: whatever they hold, a message stays one line.
-std::string oneLine(const std::string& text) {
-    std::string line;
-    for (const char c : text) {
-        if (c == '\n') line += "\\n";
-        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) line += ' ';
-        else line += c;
-    }
-    return line;
+ErrorText shown(ErrorText text) {
+    for (std::string* part : {&text.what, &text.where, &text.expected, &text.found})
+        *part = messageText(*part, kMostOfErrorPart);
+    return text;
 }
 
 std::string sentence(const ErrorText& text) {
@@ -30,8 +27,10 @@ std::string sentence(const ErrorText& text) {
 
 }  // namespace
 
-Error::Error(ErrorKind kind, ErrorText text)
-    : std::runtime_error(oneLine(sentence(text))), kind_(kind), text_(std::move(text)) {}
+Error::Error(ErrorKind kind, ErrorText text) : Error(shown(std::move(text)), kind) {}
+
+Error::Error(ErrorText&& text, ErrorKind kind)
+    : std::runtime_error(sentence(text)), kind_(kind), text_(std::move(text)) {}
 
 void throwBadInput(ErrorText text) { throw Error(ErrorKind::BadInput, std::move(text)); }
 void throwUsage(ErrorText text) { throw Error(ErrorKind::Usage, std::move(text)); }

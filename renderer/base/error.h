@@ -15,7 +15,8 @@ enum class ErrorKind {
 };
 
 /// A failure a user can act on. Its text is "where: what; expected ..., found ...", for example
-/// `atrium.json:12:9: "levels" is out of range; expected 1 to 8, found 12`.
+/// `atrium.json:12:9: "levels" is out of range; expected 1 to 8, found 12`. It is one line, whatever its parts hold,
+/// and of long parts the middle is left out.
 /// Broken promises between our own functions are asserts, not Errors.
 struct ErrorText {
     std::string what{};      ///< the fault in one clause
@@ -33,6 +34,8 @@ public:
     const ErrorText& text() const { return text_; }
 
 private:
+    Error(ErrorText&& text, ErrorKind kind);
+
     ErrorKind kind_;
     ErrorText text_;
 };

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/message_text.h"
+
 namespace lumi {
 
-void MessageLog::add(Severity severity, std::string text) {
+void MessageLog::add(Severity severity, const std::string& text) {
     std::function<void(const Message&)> listener;
-    Message message{severity, std::move(text), 1, 0};
+    Message message{severity, messageText(text, kMostOfMessage), 1, 0};
     {
         std::lock_guard lock(mutex_);
         message.serial = ++serial_;

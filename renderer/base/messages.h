@@ -20,13 +20,14 @@ struct Message {
 };
 
 /// Everything the engine wants to tell a person. The library never prints: programs read this, or set a listener.
-/// Safe to call from any thread. A text that was reported before is counted, not listed again.
+/// Safe to call from any thread. Texts become single lines of at most 4000 bytes. One that was reported before is
+/// counted, not listed again.
 class MessageLog {
 public:
-    void info(std::string text) { add(Severity::Info, std::move(text)); }
-    void warning(std::string text) { add(Severity::Warning, std::move(text)); }
-    void error(std::string text) { add(Severity::Error, std::move(text)); }
-    void add(Severity severity, std::string text);
+    void info(const std::string& text) { add(Severity::Info, text); }
+    void warning(const std::string& text) { add(Severity::Warning, text); }
+    void error(const std::string& text) { add(Severity::Error, text); }
+    void add(Severity severity, const std::string& text);
 
     /// In the order in which they were reported last.
     std::vector<Message> messages() const;

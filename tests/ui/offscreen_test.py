@@ -2,10 +2,12 @@
 
     offscreen_test.py LUMISCOPE FOLDER
 """
+import base64
 import json
 import os
 import pathlib
 import shutil
+import struct
 import subprocess
 import sys
 
@@ -160,6 +162,36 @@ shot large
     small, large = Picture(out / "small.png"), Picture(out / "large.png")
     assert (small.width, small.height, large.width, large.height) == (640, 480, 3840, 2160)
     assert small.mean((0, 60, 350, 450)) > 3 and large.mean((0, 200, 2800, 2000), 17) > 10, "the picture shows at any size"
+
+
+def test_long_names_of_files():
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    name = "long " + 100000 * "x"
+    refused, shown = FOLDER / "refused.gltf", FOLDER / "named.gltf"
+    refused.write_text(json.dumps({"asset": {"version": "2.0"}, "extensionsRequired": [name]}))
+    corners = "data:application/octet-stream;base64," + base64.b64encode(
+        struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)).decode()
+    shown.write_text(json.dumps({
+        "asset": {"version": "2.0"}, "extensionsUsed": [name], "scene": 0, "scenes": [{"nodes": [0], "name": name}],
+        "nodes": [{"mesh": 0, "name": name}], "materials": [{"name": name}],
+        "meshes": [{"name": name, "primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"uri": corners, "byteLength": 36}]}))
+    out, report = view("long", f"""
+wait-load
+wait-spp 1
+drop {refused}
+wait-message refused.gltf
+pause 3
+shot refused
+drop {shown}
+wait-message named.gltf
+wait-load
+wait-spp 1
+pause 3
+shot shown
+""")
+    assert max(len(text) for text in report["errors"]) < 5000, [len(text) for text in report["errors"]]
 
 
 def test_time_steps_and_buffers():

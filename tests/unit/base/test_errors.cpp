@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/isa.h"
+#include "base/message_text.h"
 #include "support/expect_error.h"
 
 namespace lumi {
@@ -45,6 +46,33 @@ TEST(Errors, TextSaysWhereWhatExpectedAndFound) {
 
 TEST(Errors, TextIsOneLineWhateverAFileHolds) {
     EXPECT_STREQ(Error(ErrorKind::BadInput, {"unknown key \"a\nb\tc\"", "", "", ""}).what(), "unknown key \"a\\nb c\"");
+}
+
+TEST(Errors, LongPartsLoseTheirMiddle) {
+    const std::string name(100000, 'x');
+    const Error error(ErrorKind::BadInput,
+                      {"unknown key \"" + name + "\"", "a.json:1:2", "one of: a, b", name + "end"});
+    const std::string text = error.what();
+    EXPECT_LT(text.size(), 2100u);
+    EXPECT_EQ(text.find("a.json:1:2: unknown key \"xxx"), 0u);
+    EXPECT_NE(text.find("x ... x"), std::string::npos);
+    EXPECT_NE(text.find("xxx\"; expected one of: a, b, found xxx"), std::string::npos);
+    EXPECT_TRUE(text.ends_with("xxxend"));
+    EXPECT_LE(error.text().found.size(), 1000u);
+}
+
+TEST(Errors, MessagesKeepCharactersWhole) {
+    std::string umlauts;
+    for (int i = 0; i < 5000; ++i) umlauts += "\u00fc";
+    for (size_t most = 40; most < 60; ++most) {
+        const std::string text = messageText(umlauts, most);
+        EXPECT_LE(text.size(), most + 4);
+        std::string without = text;
+        for (size_t at = 0; (at = without.find("\u00fc")) != without.npos;) without.erase(at, 2);
+        EXPECT_EQ(without, " ... ") << most;
+    }
+    EXPECT_EQ(messageText("a\x1b[31m\nb", 100), "a [31m\\nb");
+    EXPECT_EQ(messageText(std::string(100, 'x'), 100), std::string(100, 'x'));
 }
 
 TEST(Errors, ExitCodesAreTheContract) {
