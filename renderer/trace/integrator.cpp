@@ -85,7 +85,10 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
         path.stream = SampleStream(settings_.sampler, settings_.haltonLoop, seed_, start.key);
         path.hash = pathHash(start.key, seed_);
         path.slot = start.slot, path.sample = start.key.sample;
-        if (start.ray.fromCamera) path.media = around_, path.absorption = absorptionAround_;
+        if (start.ray.fromCamera && start.cone.spread > 0) {  // from an eye
+            path.media = around_, path.absorption = absorptionAround_;
+            if (!firstPoints.empty()) path.throughput = transmittance(absorptionAround_, start.ray.tmax);
+        }
         batch.active[i] = i;
     }
     assert(!judge_ || (firstPoints.empty() && firstHits.empty()));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "trace/packets.h"
@@ -12,38 +13,33 @@
 namespace lumi {
 namespace {
 
-constexpr int kDirections = 16, kLeastAgreeing = 4, kMostCrossings = 64;
+constexpr int kDirections = 16, kLeastAgreeing = 14, kMostCrossings = 4096;
 
-/// What a ray crossed on its way out.
-struct Crossings {
-    std::vector<uint32_t> left;  ///< materials of solids that it left without having entered, the innermost first
-    bool escaped = false;
-};
-
-Crossings crossingsAlong(const TraceScene& scene, const Vec3& origin, const Vec3& direction, float time) {
-    Crossings result;
-    std::vector<uint32_t> entered;
+/// Materials of the solids that a ray leaves on its way out without having entered them, the innermost first; nothing
+/// if it meets too much to tell.
+std::optional<std::vector<uint32_t>> leftAlong(const TraceScene& scene, const Vec3& origin, const Vec3& direction,
+                                               float time) {
+    std::vector<uint32_t> left, entered;
     BatchRay ray{.origin = origin, .direction = direction, .time = time};
     for (int crossing = 0; crossing < kMostCrossings; ++crossing) {
         RawHit hit;
         intersectRays(scene.embree, {&ray, 1}, {&hit, 1}, Coherence::Incoherent);
-        result.escaped = !hit.valid();
-        if (!hit.valid()) return result;
+        if (!hit.valid()) return left;
         const InstanceRecord& instance = scene.tables.instances[hit.instance];
-        if (instance.body >= 0) return result;
-        const uint32_t index = instance.materialOf(hit.primitive);
-        const MaterialRecord& material = scene.tables.materials[index];
-        if (!material.solid && !material.thinWall) return result;
+        const uint32_t index = instance.body >= 0 ? 0 : instance.materialOf(hit.primitive);
+        if (instance.body >= 0 || !scene.tables.materials[index].solid) {
+            ray.origin += ray.direction * (hit.distance * 1.00001f + 1e-6f);
+            continue;
+        }
         const SurfacePoint point = surfacePoint(scene.tables, hit, ray.origin + ray.direction * hit.distance, ray.time);
         const SurfaceGeometry at = surfaceGeometry(scene.tables, point, -direction, 0);
         ray.origin = offsetOrigin(at.position, at.frontFace ? -at.outwardNormal : at.outwardNormal, at.offset);
-        if (!material.solid) continue;
         const auto earlier = std::find(entered.rbegin(), entered.rend(), index);
         if (at.frontFace) entered.push_back(index);
         else if (earlier != entered.rend()) entered.erase(std::next(earlier).base());
-        else result.left.push_back(index);
+        else left.push_back(index);
     }
-    return result;
+    return std::nullopt;
 }
 
 /// Direction k of the spherical Fibonacci lattice.
@@ -53,30 +49,16 @@ Vec3 latticeDirection(int k) {
     return {r * std::cos(angle), y, r * std::sin(angle)};
 }
 
-MediumStack mediaAt(const TraceScene& scene, const Vec3& place, float time) {
-    std::map<std::vector<uint32_t>, int> votes;
-    for (int k = 0; k < kDirections; ++k) {
-        const Crossings found = crossingsAlong(scene, place, latticeDirection(k), time);
-        if (!found.left.empty()) ++votes[found.left];
-        else if (found.escaped) return {};
-    }
-    MediumStack media;
-    const auto most =
-        std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (most == votes.end() || most->second < kLeastAgreeing) return media;
-    for (auto solid = most->first.rbegin(); solid != most->first.rend(); ++solid) media.enter(*solid);
-    return media;
-}
-
 }  // namespace
 
-MediumStack mediaAround(const TraceScene& scene, std::span<const Vec3> places, float time) {
+MediumStack mediaAround(const TraceScene& scene, const Vec3& place, float time) {
+    std::map<std::vector<uint32_t>, int> votes;
+    for (int k = 0; k < kDirections; ++k)
+        if (const auto left = leftAlong(scene, place, latticeDirection(k), time)) ++votes[*left];
     MediumStack media;
-    for (size_t i = 0; i < places.size(); ++i) {
-        const MediumStack here = mediaAt(scene, places[i], time);
-        if (i > 0 && here != media) return {};
-        media = here;
-    }
+    for (const auto& [left, count] : votes)
+        if (count >= kLeastAgreeing)
+            for (auto solid = left.rbegin(); solid != left.rend(); ++solid) media.enter(*solid);
     return media;
 }
 

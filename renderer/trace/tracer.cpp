@@ -77,17 +77,8 @@ void gatherTexels(std::span<const TextureView> textures) {
                                   size_t(4) * static_cast<size_t>(level.width) * static_cast<size_t>(level.height));
 }
 
-/// Places that speak for all from which the camera's rays come. Lenses are small beside the solids that they are in.
-std::vector<Vec3> beginnings(const CameraPose& camera) {
-    std::vector<Vec3> places = {camera.position()};
-    if (camera.projection == Projection::Perspective) return places;
-    const float halfWidth =
-        camera.halfHeight * static_cast<float>(camera.extent.width) / static_cast<float>(camera.extent.height);
-    for (const float x : {-halfWidth, halfWidth})
-        for (const float y : {-camera.halfHeight, camera.halfHeight})
-            places.push_back(transformPoint(camera.worldFromCamera, Vec3(x, y, 0)));
-    return places;
-}
+/// Does it come from the eye of a perspective camera? Rays of orthographic ones have no eye, and begin outside of all.
+bool hasEye(const PathStart& start) { return start.ray.fromCamera && start.cone.spread > 0; }
 
 std::shared_ptr<const PosedScene> emptyScene() {
     auto posed = std::make_shared<PosedScene>();
@@ -107,9 +98,9 @@ struct Tracer::Impl {
         scene.tables = makeSceneTables(*scene.posed, scene.embree);
         scene.lights.build(*scene.posed, scene.tables, stop);
     }
-    /// The solids that paths from there begin in, as far as they matter.
-    MediumStack aroundCamera(std::span<const Vec3> places, float time) const {
-        return scene.tables.absorbs ? mediaAround(scene, places, time) : MediumStack();
+    /// The solids that paths of cameras begin in, as far as they matter.
+    MediumStack aroundEye(const Vec3& eye, float time) const {
+        return scene.tables.absorbs ? mediaAround(scene, eye, time) : MediumStack();
     }
     void add(const TraceCounts& counts) {
         cameraRays.fetch_add(counts.cameraRays, std::memory_order_relaxed);
@@ -176,7 +167,7 @@ bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_t
     PathSettings path = sampling.path;
     if (extra.empty() && isGeometryOnly(signals.available())) path.maxDepth = 0;  // no light is asked for
     const Integrator integrator(impl_->scene, path, sampling.seed, observers,
-                                impl_->aroundCamera(beginnings(sampling.camera), 0));
+                                impl_->aroundEye(sampling.camera.position(), 0));
 
     static_assert(SignalsObserver::kTile * SignalsObserver::kTile <= PathBatch::kMost &&
                   SignalsObserver::kTile <= kMostInStartRow);
@@ -211,11 +202,11 @@ bool Tracer::Impl::traceBatches(std::span<const PathStart> starts, std::span<con
                                 const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
                                 std::span<PathObserver* const> observers, const std::stop_token& stop,
                                 std::span<const Hit> firstHits) {
+    // Lenses are small beside the solids that they are in: the first ray from an eye speaks for all.
     MediumStack around;
-    if (!starts.empty() && starts.front().ray.fromCamera) {
-        const Vec3 places[] = {starts.front().ray.origin, starts[starts.size() / 2].ray.origin,
-                               starts.back().ray.origin};
-        around = aroundCamera(places, starts.front().ray.time);
+    if (const auto first = std::find_if(starts.begin(), starts.end(), hasEye); first != starts.end()) {
+        const Ray& ray = first->ray;
+        around = aroundEye(firstPoints.empty() ? ray.origin : ray.origin - ray.direction * ray.tmax, ray.time);
     }
     const Integrator integrator(scene, settings, seed, observers, around);
     const auto count = static_cast<int64_t>(starts.size());
@@ -278,6 +269,10 @@ bool Tracer::shade(std::span<const SurfacePoint> points, std::span<const Vec3> w
             if (points[i].valid()) starts[i].ray.origin = surfacePosition(impl_->scene.tables, points[i]);
             starts[i].key = keys[i];
             if (!cones.empty()) starts[i].cone = cones[i];
+            if (points[i].valid() && starts[i].cone.spread > 0) {
+                starts[i].ray.fromCamera = true;
+                starts[i].ray.tmax = starts[i].cone.width / starts[i].cone.spread;  // from the eye, where it is 0
+            }
             starts[i].slot = static_cast<uint32_t>(i);
         }
     });

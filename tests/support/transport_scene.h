@@ -145,6 +145,7 @@ inline Estimate radianceAlong(Tracer& tracer, const Vec3& origin, const Vec3& di
         starts[i].ray.origin = origin;
         starts[i].ray.direction = glm::normalize(direction);
         starts[i].ray.fromCamera = fromCamera;
+        starts[i].cone.spread = fromCamera ? 1e-3f : 0.0f;
         starts[i].key = {7, 11, static_cast<uint32_t>(i)};
         starts[i].slot = static_cast<uint32_t>(i);
     }

@@ -80,35 +80,75 @@ TEST(Absorption, BeginsWhereTheCameraIs) {
     inIce.add(boxMesh(Vec3(4, 1, 4)), tinted());
     inIce.add(boxMesh(Vec3(1)), ice, translation(Vec3(0)) * scaling(Vec3(0.75f)));
     expectSeen(seenFromInside(inIce, eye, up), std::pow(0.25, 0.25));  // the last 12.5 cm
-    // Water that is a surface over an open basin; without the basin nothing is under it.
-    TinyScene pool;
-    pool.add(floorMesh(4), tinted(), translation(Vec3(0, 1, 0)));
-    expectSeen(seenFromInside(pool, Vec3(0.1f, 0, 0.1f), up), 1);
-    pool.add(floorMesh(4), lambert(0), translation(Vec3(0, -1, 0)));
-    pool.add(rectangleMesh(4, 2, Facing::X), lambert(0), translation(Vec3(2, 0, 0)));
-    pool.add(rectangleMesh(4, 2, Facing::X), lambert(0), translation(Vec3(-2, 0, 0)));
-    pool.add(rectangleMesh(4, 2, Facing::Z), lambert(0), translation(Vec3(0, 0, 2)));
-    pool.add(rectangleMesh(4, 2, Facing::Z), lambert(0), translation(Vec3(0, 0, -2)));
-    expectSeen(seenFromInside(pool, Vec3(0.1f, 0, 0.1f), up), 0.25 * 0.25);
+    // Through walls in and around it, at any depth.
+    inside.add(boxMesh(Vec3(0.02f, 0.4f, 0.4f)), lambert(0), translation(Vec3(0.5f, 0, 0.5f)));
+    inside.add(boxMesh(Vec3(6, 6, 6)), lambert(0), translation(Vec3(0, -3.45f, 0)));
+    expectSeen(seenFromInside(inside, Vec3(0.1f, -0.4f, 0.2f), up), std::pow(0.25, 1.8));
+    expectSeen(seenFromInside(inside, Vec3(0.1f, 0.4f, 0.2f), up), std::pow(0.25, 0.2));
 }
 
-// What the plane of an orthographic camera cuts is entered where it begins in front of it.
-TEST(Absorption, BeginsWhereAllOfAnOrthographicCameraIs) {
+// Panes of a room and the surface of a pool have no other side to be left through.
+TEST(Absorption, SheetsAreNoSolidsToBeginIn) {
+    TinyScene room;
+    room.add(floorMesh(4), tinted(), translation(Vec3(0, 1, 0)));
+    room.add(floorMesh(4), lambert(0), translation(Vec3(0, -1, 0)));
+    for (const float x : {-2.0f, 2.0f})
+        room.add(rectangleMesh(4, 2, Facing::X), tinted(),
+                 scaling(Vec3(x < 0 ? -1 : 1, 1, 1)) * translation(Vec3(2, 0, 0)));
+    expectSeen(seenFromInside(room, Vec3(0.1f, 0.9f, 0.1f), Vec3(0, 1, 0)), 1);
+    expectSeen(seenFromInside(room, Vec3(0.1f, -0.9f, 0.1f), Vec3(0, 1, 0)), 1);
+}
+
+// Its plane may cut what it sees.
+TEST(Absorption, OrthographicCamerasBeginOutside) {
     Camera camera = lookFrom(Vec3(0), Vec3(0, 0, -1), 45);
     camera.projection = Projection::Orthographic;
     camera.yMag = 1;
-    const auto corner = [&](float boxSize) {
-        TinyScene tiny;
-        tiny.add(boxMesh(Vec3(boxSize, boxSize, 1)), tinted());
-        tiny.scene.environment.constant = Vec3(1);
-        Tracer tracer;
-        tracer.bind(tiny.pose());
-        Signals frame;
-        EXPECT_TRUE(tracer.sample(frameOf(camera, {16, 16}, 64, plainPaths(8), {Signal::Noisy}, 1), frame));
-        return frame[Signal::Noisy].at(0, 0, 0);
-    };
-    EXPECT_NEAR(corner(1), 1, 1e-3) << "beside the box";
-    EXPECT_NEAR(corner(4), 0.25, 2e-3) << "half a metre inside it";
+    TinyScene tiny;
+    tiny.add(boxMesh(Vec3(4, 4, 1)), tinted());
+    tiny.scene.environment.constant = Vec3(1);
+    Tracer tracer;
+    tracer.bind(tiny.pose());
+    Signals frame;
+    EXPECT_TRUE(tracer.sample(frameOf(camera, {16, 16}, 64, plainPaths(8), {Signal::Noisy}, 1), frame));
+    EXPECT_NEAR(frame[Signal::Noisy].at(0, 0, 0), 1, 1e-3);
+}
+
+// A point that a camera sees through what it is in, shaded again, and the frame that shows it.
+TEST(Absorption, PointsAreShadedAsTheirCameraSeesThem) {
+    TinyScene tiny;
+    tiny.add(boxMesh(Vec3(4, 2, 4)), tinted());
+    Material glow = lambert(0.5f);
+    glow.emission = Vec3(1);
+    tiny.add(floorMesh(3), glow, translation(Vec3(0, -0.9f, 0)));
+    tiny.scene.environment.constant = Vec3(1);
+    Tracer tracer;
+    tracer.bind(tiny.pose());
+    const CameraPose camera = poseCamera(lookFrom(Vec3(0.1f, 0.6f, 0.2f), Vec3(0, -0.9f, 0), 40), {16, 16});
+    std::vector<PathStart> starts;
+    std::vector<Ray> rays;
+    for (uint32_t i = 0; i < 256; ++i) {
+        starts.push_back(cameraStart(camera, Vec2(float(i % 16) + 0.5f, float(i / 16) + 0.5f), Vec2(0.5f), 0));
+        starts.back().key = {i % 16, i / 16, 0}, starts.back().slot = i;
+        rays.push_back(starts.back().ray);
+    }
+    std::vector<Hit> hits(rays.size());
+    tracer.closestHits(rays, hits);
+    std::vector<SurfacePoint> points;
+    std::vector<Vec3> wo, seen(rays.size()), shaded(rays.size());
+    std::vector<RandomKey> keys;
+    std::vector<RayCone> cones;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_TRUE(hits[i].valid());
+        points.push_back(hits[i].point), wo.push_back(-rays[i].direction), keys.push_back(starts[i].key);
+        cones.push_back({starts[i].cone.spread * hits[i].distance, starts[i].cone.spread});
+    }
+    ASSERT_TRUE(tracer.tracePaths(starts, plainPaths(4), 3, seen, {}));
+    ASSERT_TRUE(tracer.shade(points, wo, keys, plainPaths(4), 3, shaded, {}, {}, cones));
+    for (size_t i = 0; i < rays.size(); ++i) {
+        EXPECT_LT(seen[i].y, 0.25f);
+        EXPECT_NEAR(shaded[i].y / seen[i].y, 1, 2e-3) << i;
+    }
 }
 
 TEST(Absorption, SolidsAreLeftInAnyOrder) {
