@@ -239,8 +239,8 @@ void addDefaults(Scene& scene, MessageLog& log, bool allowSky, std::stop_token s
     log.warning(scene.path +
                 (someSurface(scene, emits)
                      ? ": no light, and emission only in textures of strength 1 or less, which paint glowing "
-                       "parts; lit by the built-in sky (environment.scale 0 takes it away)"
-                     : ": no light and no emission; lit by the built-in sky"));
+                       "parts; lit by the built-in sky unless another is set (environment.scale 0 takes it away)"
+                     : ": no light and no emission; lit by the built-in sky unless another is set"));
 }
 
 }  // namespace lumi

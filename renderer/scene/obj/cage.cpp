@@ -131,7 +131,7 @@ void uncommentTags(std::string& text) {
     }
 }
 
-std::optional<SubdivisionCage::Scheme> saidScheme(std::string_view text) {
+std::optional<SubdivisionCage::Scheme> saidScheme(std::string_view text, FileWarnings& warnings) {
     using Scheme = SubdivisionCage::Scheme;
     constexpr std::string_view kMark = "# scheme: ";
     constexpr std::pair<std::string_view, Scheme> kNames[] = {{"catmark", Scheme::CatmullClark},
@@ -142,6 +142,7 @@ std::optional<SubdivisionCage::Scheme> saidScheme(std::string_view text) {
         const std::string_view name = rest.substr(0, rest.find_first_of(" \t\r\n;,"));
         for (const auto& [known, scheme] : kNames)
             if (name == known) return scheme;
+        if (!name.empty()) warnings.warn(fmt::format("the subdivision scheme \"{}\" is not supported", name));
     }
     return std::nullopt;
 }
@@ -195,7 +196,7 @@ SubdivisionCage parseCage(std::string text, const std::string& where, MessageLog
     text = plainObj(text, [](const std::string&) { return false; });
     checkObjNumbers(text, warnings);
     uncommentTags(text);
-    const auto scheme = saidScheme(text).value_or(SubdivisionCage::Scheme::CatmullClark);
+    const auto scheme = saidScheme(text, warnings).value_or(SubdivisionCage::Scheme::CatmullClark);
     tinyobj::ObjReaderConfig config;
     config.triangulate = false;
     config.vertex_color = false;

@@ -16,7 +16,7 @@ void uncommentTags(std::string& objText);
 
 /// The scheme of a subdivision surface that the file says to be the cage of, by a comment "# scheme: catmark" or
 /// "# scheme: bilinear", as OpenSubdiv's shapes do.
-std::optional<SubdivisionCage::Scheme> saidScheme(std::string_view objText);
+std::optional<SubdivisionCage::Scheme> saidScheme(std::string_view objText, FileWarnings& warnings);
 
 /// True if a shape has a tag that is known: the file means a subdivision surface.
 bool hasTags(const std::vector<tinyobj::shape_t>& shapes);

@@ -77,7 +77,7 @@ ParsedObj parse(const std::filesystem::path& path, FileWarnings& warnings) {
     bytes = {};
     checkObjNumbers(lines, warnings);
     uncommentTags(lines);
-    parsed.scheme = saidScheme(lines);
+    parsed.scheme = saidScheme(lines, warnings);
     std::istringstream text(std::move(lines));
     FolderMaterials materials(path.parent_path(), warnings, parsed.digest);
     std::string warning, error;

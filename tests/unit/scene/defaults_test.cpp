@@ -192,7 +192,7 @@ TEST(Defaults, DarkScenesGetTheSkyAndAWarning) {
     addDefaults(dark, log, true);
     EXPECT_TRUE(dark.environment.visible());
     ASSERT_EQ(log.warnings().size(), 1u);
-    EXPECT_EQ(log.warnings()[0], "made.obj: no light and no emission; lit by the built-in sky");
+    EXPECT_EQ(log.warnings()[0], "made.obj: no light and no emission; lit by the built-in sky unless another is set");
 
     Scene glowing = sceneOf(boxMesh(Vec3(1)));
     glowing.materials[0].emission = Vec3(1);

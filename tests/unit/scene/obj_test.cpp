@@ -277,6 +277,9 @@ TEST(ObjCage, CommentsSayTheScheme) {
     EXPECT_EQ(loadText("# scheme: bilinear\r\n" + cube).restBounds().upper.x, 1);
     for (const char* plain : {"# scheme: loop\n", "# the scheme: catmark\n", "# scheme\n", "# scheme: "})
         EXPECT_EQ(loadText(cube + plain).triangleCount(), 12) << plain;
+    MessageLog log;
+    loadText(cube + "# scheme: loop\n", log);
+    EXPECT_NE(log.warnings().at(0).find("the subdivision scheme \"loop\" is not supported"), std::string::npos);
 }
 
 TEST(ObjCage, TheSceneFileHasTheLastWordOnTheScheme) {
