@@ -160,7 +160,6 @@ private:
     Elements sparseArray(int view, int offset, int componentType, int components, const std::string& path) const {
         const size_t component = componentBytes(componentType);
         if (component == 0) document_.fail(path, "unsupported component type", {}, std::to_string(componentType));
-        if (offset < 0) document_.fail(path + "/byteOffset", "negative offset", {}, std::to_string(offset));
         Elements array;
         array.components = components;
         array.componentType = componentType;
@@ -177,7 +176,7 @@ private:
     void putSparse(std::vector<To>& out) const {
         const auto& sparse = accessor_->sparse;
         const std::string path = path_ + "/sparse";
-        if (sparse.count < 0 || static_cast<size_t>(sparse.count) > elements_.count)
+        if (static_cast<size_t>(sparse.count) > elements_.count)
             document_.fail(path + "/count", "absurd count", "0 to " + std::to_string(elements_.count),
                            std::to_string(sparse.count));
         const Elements places = sparseArray(sparse.indices.bufferView, sparse.indices.byteOffset,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/error.h"
@@ -12,6 +13,7 @@
 #include "scene/gltf/glb.h"
 #include "scene/gltf/json_guard.h"
 #include "scene/gltf/meshopt.h"
+#include "scene/gltf/structure.h"
 
 namespace lumi::gltf {
 namespace {
@@ -48,11 +50,6 @@ constexpr std::array kStandInExtensions = {"EXT_texture_avif", "EXT_texture_webp
 bool isSupported(const std::string& extension) {
     const auto in = [&](const auto& list) { return std::find(list.begin(), list.end(), extension) != list.end(); };
     return in(kSupportedExtensions) || in(kStandInExtensions);
-}
-
-/// Of data their kind alone.
-std::string shortened(const std::string& uri) {
-    return isDataUri(uri) && uri.size() > 40 ? uri.substr(0, 40) + "..." : uri;
 }
 
 std::string firstLine(const std::string& text) { return text.substr(0, text.find_first_of("\r\n")); }
@@ -106,37 +103,24 @@ void Document::parse(std::span<const uint8_t> file) {
         binary ? jsonChunk(file, name_) : std::string_view(reinterpret_cast<const char*>(file.data()), file.size());
     if (!binary && lowerExtension(path_) == ".glb")
         throwBadInput({.what = "not a GLB file", .where = name_, .expected = "the magic bytes \"glTF\""});
-    uint64_t bytes = 0;
-    const JsonSummary summary = inspectJson(json, name_);
-    checkRequiredExtensions(summary.requiredExtensions);
-    bool needsPatch = summary.hasDraco || summary.hasOtherUris || summary.hasSparseAlone;
-    for (const JsonSummary::Buffer& buffer : summary.buffers) {
-        needsPatch |= buffer.isFallback;
-        if (buffer.isFallback) continue;
-        if (buffer.external) externalBufferLengths_.push_back(buffer.byteLength);
-        bytes += buffer.hasUri ? 0 : std::min<uint64_t>(buffer.byteLength, file.size());
-    }
-    checkMemory("the JSON of " + name_, summary.treeBytes);
-    checkMemory("the buffers of " + name_, bytes);
+    const std::string patched = checkedJson(json, binary ? binaryChunkBytes(file) : 0);
+    checkMemory("the buffers of " + name_, sources_.binaryBytes);
 
     tinygltf::TinyGLTF reader;
     reader.SetFsCallbacks(callbacksFor(*this));
     reader.SetImageLoader(keepEncoded, this);
     std::string error, warning;
     const bool good = [&] {
-        const std::string patched = needsPatch ? readableByTinygltf(json) : std::string();
         if (binary) {
-            const std::vector<uint8_t> glb = needsPatch ? withJsonChunk(file, patched) : std::vector<uint8_t>();
-            const std::span<const uint8_t> whole = needsPatch ? std::span<const uint8_t>(glb) : file;
+            const std::vector<uint8_t> glb = patched.empty() ? std::vector<uint8_t>() : withJsonChunk(file, patched);
+            const std::span<const uint8_t> whole = patched.empty() ? file : std::span<const uint8_t>(glb);
             return reader.LoadBinaryFromMemory(&model_, &error, &warning, whole.data(),
                                                static_cast<unsigned int>(whole.size()), kFolder);
         }
-        const std::string_view text = needsPatch ? std::string_view(patched) : json;
+        const std::string_view text = patched.empty() ? json : std::string_view(patched);
         return reader.LoadASCIIFromString(&model_, &error, &warning, text.data(),
                                           static_cast<unsigned int>(text.size()), kFolder);
     }();
-    if (!good && !missingFile_.empty() && error.find("File not found") != error.npos)
-        throwBadInput({.what = missingFile_, .where = name_});
     if (!good) throwBadInput({.what = "damaged glTF: " + firstLine(error), .where = name_});
 
     checkVersion();
@@ -144,10 +128,23 @@ void Document::parse(std::span<const uint8_t> file) {
     for (size_t i = 0; i < images_.size(); ++i) {
         const tinygltf::Image& image = model_.images[i];
         images_[i].bufferView = image.bufferView;
-        images_[i].name = !image.uri.empty()    ? shortened(image.uri)
+        images_[i].name = isDataUri(image.uri)  ? shortened(image.uri)
+                          : !image.uri.empty()  ? image.uri
                           : !image.name.empty() ? image.name
                                                 : "image " + std::to_string(i);
     }
+}
+
+std::string Document::checkedJson(std::string_view json, uint64_t chunkBytes) {
+    const JsonSummary summary = inspectJson(json, name_);
+    checkRequiredExtensions(summary.requiredExtensions);
+    checkMemory("the JSON of " + name_, summary.treeBytes);
+    nlohmann::json tree = nlohmann::json::parse(json.begin(), json.end());
+    bool hasChanged = checkStructure(tree, name_);
+    hasChanged |= makeReadable(tree);
+    sources_ = checkSources(tree, path_.parent_path(), chunkBytes, name_);
+    if (!hasChanged && !sources_.hasCut) return {};
+    return tree.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 /// glTF: any 2.x may be read by who knows 2.0, unless minVersion asks for more.
@@ -174,9 +171,8 @@ void Document::fail(const std::string& jsonPath, const std::string& what, const 
 
 void Document::checkIndex(int64_t index, size_t count, const std::string& jsonPath, const char* collection) const {
     if (index >= 0 && static_cast<uint64_t>(index) < count) return;
-    const std::string expected =
-        count == 0 ? "none, since there are no " + std::string(collection) : "0 to " + std::to_string(count - 1);
-    fail(jsonPath, "no such entry in /" + std::string(collection), expected, std::to_string(index));
+    fail(jsonPath, "no such entry in /" + std::string(collection), expectedIndex(count, collection),
+         std::to_string(index));
 }
 
 std::span<const uint8_t> Document::bufferView(int index, const std::string& jsonPath) const {
@@ -217,46 +213,46 @@ void Document::pollStop() const {
         throw Error(ErrorKind::Interrupted, {.what = "loading was stopped", .where = name_});
 }
 
-std::filesystem::path Document::resolve(const std::string& uri) const {
-    std::optional<std::filesystem::path> file = pathInside(path_.parent_path(), uri);
-    if (!file || uri.find("://") != uri.npos)
-        throwBadInput({.what = "the file name \"" + uri + "\" leads out of the asset's folder", .where = name_});
-    return *std::move(file);
+std::filesystem::path Document::resolve(const std::string& tinygltfPath) const {
+    if (!tinygltfPath.starts_with(kFolder + "/")) return {};
+    return pathInside(path_.parent_path(), tinygltfPath.substr(kFolder.size() + 1)).value_or("");
 }
 
 bool Document::fileExists(const std::string& tinygltfPath) {
-    if (!tinygltfPath.starts_with(kFolder + "/")) return false;
-    const std::string uri = tinygltfPath.substr(kFolder.size() + 1);
-    if (isDataUri(uri)) {
-        missingFile_ = "a buffer has an unsupported kind of data URI, \"" + shortened(uri) + '"';
-        return false;
-    }
-    const std::string shown = "the buffer file \"" + uri.substr(0, 200) + '"';
-    missingFile_ = shown + " does not exist";
+    const std::filesystem::path file = resolve(tinygltfPath);
     std::error_code ignored;
-    const std::filesystem::file_status status = std::filesystem::status(resolve(uri), ignored);
-    if (std::filesystem::is_directory(status)) missingFile_ = shown + " is a directory";
-    else if (std::filesystem::exists(status)) missingFile_ = shown + " is not a regular file";
-    return std::filesystem::is_regular_file(status);
+    const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+    const bool isFile = !file.empty() && std::filesystem::is_regular_file(status);
+    if (isFile || buffersRead_ == sources_.files.size()) return isFile;
+    const std::string shown = "the buffer file \"" + tinygltfPath.substr(kFolder.size() + 1).substr(0, 200) + '"';
+    const char* fault = std::filesystem::is_directory(status) ? " is a directory"
+                        : std::filesystem::exists(status)     ? " is not a regular file"
+                                                              : " does not exist";
+    fail("/buffers/" + std::to_string(sources_.files[buffersRead_].buffer) + "/uri", shown + fault);
 }
 
 bool Document::readWholeFile(std::vector<unsigned char>& out, const std::string& tinygltfPath) {
     pollStop();
-    const std::filesystem::path file = resolve(tinygltfPath.substr(kFolder.size() + 1));
-    if (externalBuffersRead_ == externalBufferLengths_.size()) {
+    const std::filesystem::path file = resolve(tinygltfPath);
+    if (buffersRead_ == sources_.files.size()) {
         // All buffers are read: this is an image, which is read and decoded later, in parallel.
         lastImageFile_ = file;
         out.assign(1, 0);
         return true;
     }
-    const uint64_t wanted = externalBufferLengths_[externalBuffersRead_++];
+    const Sources::File& wanted = sources_.files[buffersRead_++];
+    const std::string name = file.filename().string();
     std::error_code ignored;
-    checkMemory("the buffer " + file.filename().string(), std::filesystem::file_size(file, ignored));
+    checkMemory("the buffer " + name, std::filesystem::file_size(file, ignored));
     out = readFile(file, kMaxFileBytes);
     digest_ = digest64(out, digest_);
     byteCount_ += out.size();
+    if (out.size() < wanted.byteLength)
+        fail("/buffers/" + std::to_string(wanted.buffer) + "/byteLength",
+             "is more than the file \"" + name + "\" holds", "at most " + std::to_string(out.size()),
+             std::to_string(wanted.byteLength));
     // A file may be longer than its buffer; tinygltf insists on the exact length.
-    if (out.size() > wanted) out.resize(static_cast<size_t>(wanted));
+    out.resize(static_cast<size_t>(wanted.byteLength));
     return true;
 }
 

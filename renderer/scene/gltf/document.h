@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/file_warnings.h"
+#include "scene/gltf/sources.h"
 #include "scene/load.h"
 
 namespace lumi::gltf {
@@ -19,7 +20,8 @@ struct ImageSource {
     std::string name;            ///< for messages
 };
 
-/// A parsed glTF file. Its JSON is well-formed and its buffers are complete; indices are checked where they are used.
+/// A parsed glTF file. Its JSON has the form of a glTF (checkStructure) and its buffers are complete; what the
+/// form does not say is checked where it is used.
 class Document {
 public:
     /// Reads and parses the file and its buffers; images stay where they are. Throws Error(BadInput) or
@@ -62,10 +64,12 @@ public:
 
 private:
     void parse(std::span<const uint8_t> file);
+    /// Checks the JSON and notes its sources. What tinygltf should read in its place, or empty.
+    std::string checkedJson(std::string_view json, uint64_t chunkBytes);
     void decompressViews();
     void checkVersion() const;
     void checkRequiredExtensions(const std::vector<std::string>& names) const;
-    std::filesystem::path resolve(const std::string& uri) const;
+    std::filesystem::path resolve(const std::string& tinygltfPath) const;
 
     std::filesystem::path path_;
     std::string name_;  ///< file name, heads every message
@@ -75,9 +79,8 @@ private:
     tinygltf::Model model_;
     std::vector<ImageSource> images_;
     std::vector<std::vector<uint8_t>> decompressed_;  ///< by buffer view; empty where it is not compressed
-    std::vector<uint64_t> externalBufferLengths_;
-    size_t externalBuffersRead_ = 0;
-    std::string missingFile_;  ///< the last file that was asked for, and that it is not there
+    Sources sources_;
+    size_t buffersRead_ = 0;  ///< of those in files of their own
     std::filesystem::path lastImageFile_;
     uint64_t digest_ = 0;
     uint64_t byteCount_ = 0;

@@ -98,7 +98,7 @@ private:
     Counts promisedCounts() const {
         const auto position = primitive_.attributes.find("POSITION");
         if (position == primitive_.attributes.end()) document_.fail(primitivePath_ + "/attributes", "has no POSITION");
-        const int indicesAccessor = integerOf(extension_, "indices", -1);  // put there by readableByTinygltf()
+        const int indicesAccessor = integerOf(extension_, "indices", -1);  // put there by makeReadable()
         if (indicesAccessor < 0) document_.fail(primitivePath_ + "/indices", "is missing beside Draco data");
         const size_t vertices = elementCount(document_, position->second, primitivePath_ + "/attributes/POSITION");
         const size_t indices = elementCount(document_, indicesAccessor, primitivePath_ + "/indices");

@@ -1,5 +1,6 @@
 #include "scene/gltf/glb.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/error.h"
@@ -38,6 +39,11 @@ std::string_view jsonChunk(std::span<const uint8_t> file, const std::string& whe
     if (word(file, 16) != kJson || 20 + length > file.size())
         throwBadInput({.what = "the GLB's JSON chunk is damaged", .where = where});
     return {reinterpret_cast<const char*>(file.data()) + 20, static_cast<size_t>(length)};
+}
+
+uint64_t binaryChunkBytes(std::span<const uint8_t> file) {
+    const uint64_t header = uint64_t(20) + word(file, 12), begin = header + 8;
+    return begin <= file.size() ? std::min<uint64_t>(word(file, header), file.size() - begin) : 0;
 }
 
 std::vector<uint8_t> withJsonChunk(std::span<const uint8_t> file, std::string json) {

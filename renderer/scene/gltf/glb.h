@@ -13,6 +13,9 @@ bool isBinary(std::span<const uint8_t> file);
 /// The JSON chunk of a GLB. Throws Error(BadInput) headed by `where` if the header or the chunk is cut off.
 std::string_view jsonChunk(std::span<const uint8_t> file, const std::string& where);
 
+/// Bytes of the binary chunk of a GLB that jsonChunk() accepts; 0 without one.
+uint64_t binaryChunkBytes(std::span<const uint8_t> file);
+
 /// A GLB that jsonChunk() accepts, with another JSON chunk.
 std::vector<uint8_t> withJsonChunk(std::span<const uint8_t> file, std::string json);
 

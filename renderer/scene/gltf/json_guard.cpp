@@ -75,23 +75,21 @@ bool isMisread(std::string_view name, size_t at) {
     return name[at] == '+' || (name[at] == '%' && !escapes);
 }
 
-bool isOther(const std::string& uri) {
-    if (isDataUri(uri)) return otherDataAt(uri) > 0;
-    for (size_t at = uri.find_first_of("+%"); at != uri.npos; at = uri.find_first_of("+%", at + 1))
-        if (isMisread(uri, at)) return true;
-    return false;
-}
-
-void makeReadable(Json& owner) {
-    if (!owner.is_object() || !owner.contains("uri") || !owner["uri"].is_string()) return;
+/// Returns whether the URI has changed.
+bool makeUriReadable(Json& owner) {
+    if (!owner.contains("uri")) return false;
     auto& uri = owner["uri"].get_ref<std::string&>();
-    if (const size_t data = otherDataAt(uri); data > 0) uri.replace(0, data, "data:application/octet-stream;base64,");
-    if (isDataUri(uri) || !isOther(uri)) return;
+    if (const size_t data = otherDataAt(uri); data > 0) {
+        uri.replace(0, data, "data:application/octet-stream;base64,");
+        return true;
+    }
+    if (isDataUri(uri)) return false;
     std::string escaped;
     for (size_t at = 0; at < uri.size(); ++at)
         if (isMisread(uri, at)) escaped += uri[at] == '+' ? "%2B" : "%25";
         else escaped += uri[at];
-    uri = std::move(escaped);
+    uri.swap(escaped);
+    return uri != escaped;
 }
 
 /// Moves the indices of a primitive into an extension.
@@ -117,39 +115,21 @@ public:
     JsonSummary summary;
 
     bool null() override { return count(); }
-    bool boolean(bool value) override {
-        if (section_ == "buffers" && depth_ == 5 && key_ == "fallback" && !summary.buffers.empty())
-            summary.buffers.back().isFallback = value;
-        return count();
-    }
+    bool boolean(bool) override { return count(); }
     bool number_integer(number_integer_t) override { return count(); }
-    bool number_unsigned(number_unsigned_t value) override {
-        if (inBuffer() && key_ == "byteLength") summary.buffers.back().byteLength = value;
-        return count();
-    }
+    bool number_unsigned(number_unsigned_t) override { return count(); }
     bool number_float(number_float_t, const string_t&) override { return count(); }
     bool string(string_t& value) override {
         if (depth_ == 2 && section_ == "extensionsRequired") summary.requiredExtensions.push_back(value);
-        summary.hasOtherUris |=
-            depth_ == 3 && (section_ == "buffers" || section_ == "images") && key_ == "uri" && isOther(value);
-        if (inBuffer() && key_ == "uri") {
-            summary.buffers.back().hasUri = !value.empty();
-            summary.buffers.back().external = !value.empty() && !isDataUri(value);
-        }
         return count(kBodyBytes + value.size());
     }
     bool binary(binary_t&) override { return true; }
     bool start_object(std::size_t) override {
         enter();
         if (freeDepth_ == 0) summary.treeBytes += 2 * modelBytes(section_, depth_);
-        if (depth_ == 3 && section_ == "buffers") summary.buffers.emplace_back();
-        if (depth_ == 3) isSparse_ = hasView_ = false;
         return true;
     }
-    bool end_object() override {
-        summary.hasSparseAlone |= depth_ == 3 && section_ == "accessors" && isSparse_ && !hasView_;
-        return leave();
-    }
+    bool end_object() override { return leave(); }
     bool start_array(std::size_t) override {
         enter();
         return true;
@@ -157,11 +137,8 @@ public:
     bool end_array() override { return leave(); }
     bool key(string_t& value) override {
         if (depth_ == 1) section_ = value;
-        summary.hasDraco |= section_ == "meshes" && value == kDraco;
-        if (depth_ == 3) isSparse_ |= value == "sparse", hasView_ |= value == "bufferView";
         if (freeDepth_ == 0 || depth_ == freeDepth_)
             freeDepth_ = value == "extras" || value == "extensions" ? depth_ : 0;
-        key_ = value;
         summary.treeBytes += section_ == "meshes" ? 2 * kMemberBytes : kMemberBytes;  // attributes are kept as maps
         return true;
     }
@@ -182,7 +159,6 @@ private:
         summary.treeBytes += kValueBytes + beyondValue + (freeDepth_ > 0 ? 2 * sizeof(tinygltf::Value) : 0);
         return true;
     }
-    bool inBuffer() const { return depth_ == 3 && section_ == "buffers" && !summary.buffers.empty(); }
     void enter() {
         if (++depth_ > kMaxJsonDepth)
             throwBadInput({.what = "the JSON is nested too deeply",
@@ -199,44 +175,38 @@ private:
     const std::string& where_;
     int depth_ = 0;
     int freeDepth_ = 0;  ///< that of the "extras" or "extensions" being read, else 0
-    std::string section_, key_;
-    bool isSparse_ = false, hasView_ = false;  ///< of the accessor being read
+    std::string section_;
 };
 
 }  // namespace
 
 bool isDataUri(std::string_view uri) { return lower(uri.substr(0, 5)) == "data:"; }
 
-std::string readableByTinygltf(std::string_view json) {
-    Json tree = Json::parse(json.begin(), json.end());
+bool makeReadable(Json& tree) {
+    bool hasChanged = false;
     const auto each = [](Json& parent, const char* name, const auto& visit) {
-        if (!parent.is_object() || !parent.contains(name) || !parent[name].is_array()) return;
-        for (Json& entry : parent[name]) visit(entry);
+        if (parent.contains(name))
+            for (Json& entry : parent[name]) visit(entry);
     };
-    each(tree, "buffers", [](Json& buffer) {
-        makeReadable(buffer);
+    each(tree, "buffers", [&](Json& buffer) {
+        hasChanged |= makeUriReadable(buffer);
         const Json* meshopt = extensionIn(buffer, kMeshopt);
         if (!meshopt || !meshopt->contains("fallback") || (*meshopt)["fallback"] != true) return;
         buffer["uri"] = "data:application/octet-stream;base64,AA==";
         buffer["byteLength"] = 1;
+        hasChanged = true;
     });
-    each(tree, "images", makeReadable);
-    std::vector<bool> sparseAlone;
-    each(tree, "accessors", [&](Json& accessor) {
-        sparseAlone.push_back(accessor.is_object() && accessor.contains("sparse") && !accessor.contains("bufferView"));
-    });
+    each(tree, "images", [&](Json& image) { hasChanged |= makeUriReadable(image); });
     each(tree, "meshes", [&](Json& mesh) {
         each(mesh, "primitives", [&](Json& primitive) {
-            if (!primitive.is_object() || !primitive.contains("indices")) return;
-            const Json& indices = primitive["indices"];
-            if (extensionIn(primitive, kDraco)) moveIndices(primitive, kDraco);
-            else if (indices.is_number_unsigned() && indices.get<uint64_t>() < sparseAlone.size() &&
-                     sparseAlone[indices.get<uint64_t>()] &&
-                     (!primitive.contains("extensions") || objectIn(primitive, "extensions")))
-                moveIndices(primitive, kSparseIndices);
+            if (!primitive.contains("indices")) return;
+            const bool isDraco = extensionIn(primitive, kDraco) != nullptr;
+            if (!isDraco && tree["accessors"][primitive["indices"].get<size_t>()].contains("bufferView")) return;
+            moveIndices(primitive, isDraco ? kDraco : kIndicesAlone);
+            hasChanged = true;
         });
     });
-    return tree.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return hasChanged;
 }
 
 JsonSummary inspectJson(std::string_view json, const std::string& where) {

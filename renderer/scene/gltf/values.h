@@ -60,10 +60,10 @@ inline const tinygltf::Value* extensionOf(const tinygltf::ExtensionMap& extensio
     return found != extensions.end() && found->second.IsObject() ? &found->second : nullptr;
 }
 
-/// The accessor of the primitive's indices, or -1; see kSparseIndices.
+/// The accessor of the primitive's indices, or -1; see kIndicesAlone.
 inline int indicesOf(const tinygltf::Primitive& primitive) {
-    const tinygltf::Value* sparse = extensionOf(primitive.extensions, kSparseIndices);
-    return sparse && primitive.indices < 0 ? integerOf(*sparse, "indices", -1) : primitive.indices;
+    const tinygltf::Value* alone = extensionOf(primitive.extensions, kIndicesAlone);
+    return alone && primitive.indices < 0 ? integerOf(*alone, "indices", -1) : primitive.indices;
 }
 
 }  // namespace lumi::gltf

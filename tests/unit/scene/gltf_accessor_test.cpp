@@ -200,8 +200,8 @@ TEST(GltfAccessor, SparseRangesAreChecked) {
         file.expectRefused({part});
     };
     refused([](auto& s) { s["count"] = 2; }, "sparse");
-    refused([](auto& s) { s["count"] = -1; }, "absurd count");
-    refused([](auto& s) { s["indices"]["byteOffset"] = -4; }, "negative offset");
+    refused([](auto& s) { s["count"] = -1; }, "/accessors/0/sparse/count");
+    refused([](auto& s) { s["indices"]["byteOffset"] = -4; }, "/accessors/0/sparse/indices/byteOffset");
     refused([](auto& s) { s["indices"]["bufferView"] = 66; }, "66");
     refused([](auto& s) { s["values"]["byteOffset"] = 4; }, "past the end");
     refused([](auto& s) { s["indices"]["bufferView"] = 0, s["indices"]["byteOffset"] = 14; },

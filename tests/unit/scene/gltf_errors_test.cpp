@@ -346,7 +346,8 @@ TEST(GltfErrors, VariantsAreCheckedWhetherChosenOrNot) {
 TEST(GltfErrors, OfManyFaultsTheFirstAreListed) {
     GltfBuilder file;
     file.triangle();
-    for (int i = 0; i < 1000; ++i) file.json["meshes"][0]["primitives"].push_back({{"attributes", {{"_OWN", i}}}});
+    for (int i = 0; i < 1000; ++i)
+        file.json["meshes"][0]["primitives"].push_back({{"attributes", {{"_OWN" + std::to_string(i), 0}}}});
     MessageLog log;
     EXPECT_EQ(file.load(log).triangleCount(), 1);
     ASSERT_EQ(log.warnings().size(), 201u);
