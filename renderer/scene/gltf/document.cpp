@@ -13,6 +13,7 @@
 #include "scene/gltf/glb.h"
 #include "scene/gltf/json_guard.h"
 #include "scene/gltf/meshopt.h"
+#include "scene/gltf/numbers.h"
 #include "scene/gltf/structure.h"
 
 namespace lumi::gltf {
@@ -141,6 +142,7 @@ std::string Document::checkedJson(std::string_view json, uint64_t chunkBytes) {
     checkMemory("the JSON of " + name_, summary.treeBytes);
     nlohmann::json tree = nlohmann::json::parse(json.begin(), json.end());
     bool hasChanged = checkStructure(tree, name_);
+    hasChanged |= checkNumbers(tree, warnings_);
     hasChanged |= makeReadable(tree);
     sources_ = checkSources(tree, path_.parent_path(), chunkBytes, name_);
     if (!hasChanged && !sources_.hasCut) return {};
