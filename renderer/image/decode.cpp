@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/memory.h"
@@ -16,7 +18,6 @@
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_BMP
 #define STBI_ONLY_TGA
-#define STBI_MAX_DIMENSIONS 32768
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wsign-compare"
@@ -26,7 +27,7 @@
 namespace lumi {
 namespace {
 
-static_assert(STBI_MAX_DIMENSIONS == kMaxDecodedSide);
+static_assert(STBI_MAX_DIMENSIONS > kMaxDecodedSide);  // who is refused here is told why
 
 /// Pixels a byte of any of these formats can stand for (one-bit PNG under deflate's best ratio of 1032); beyond it the
 /// header lies.
@@ -43,17 +44,44 @@ int lengthOf(std::span<const uint8_t> bytes, const std::string& name) {
                    "PNG, JPEG, BMP or TGA", ""});
 }
 
+/// Big-endian.
+uint32_t word(std::span<const uint8_t> bytes, size_t at) {
+    return uint32_t(bytes[at]) << 24 | uint32_t(bytes[at + 1]) << 16 | uint32_t(bytes[at + 2]) << 8 | bytes[at + 3];
+}
+
+void checkSides(uint32_t width, uint32_t height, const std::string& name) {
+    const auto isGood = [](uint32_t side) { return side > 0 && side <= static_cast<uint32_t>(kMaxDecodedSide); };
+    if (!isGood(width) || !isGood(height))
+        throwBadInput({"image has an impossible size", name, fmt::format("1 to {} a side", kMaxDecodedSide),
+                       fmt::format("{}x{}", width, height)});
+}
+
+/// The reader takes a PNG with a header that it refuses for no image at all.
+void checkPngHeader(std::span<const uint8_t> bytes, const std::string& name) {
+    constexpr std::string_view kMagic("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
+    constexpr uint64_t kMaxValues = uint64_t(1) << 30;  // of the reader
+    if (bytes.size() < 26 || !std::equal(kMagic.begin(), kMagic.end(), bytes.begin(),
+                                         [](char a, uint8_t b) { return static_cast<uint8_t>(a) == b; }))
+        return;
+    const uint32_t width = word(bytes, 16), height = word(bytes, 20);
+    checkSides(width, height, name);
+    const uint8_t colour = bytes[25];
+    const uint64_t channels = (colour & 1 ? 4u : colour & 2 ? 3u : 1u) + (colour & 4 ? 1u : 0u);
+    if (uint64_t(width) * height > kMaxValues / channels)
+        throwBadInput({"image is too large", name, fmt::format("at most {} pixels", kMaxValues / channels),
+                       fmt::format("{}x{}", width, height)});
+}
+
 }  // namespace
 
 Extent2 encodedExtent(std::span<const uint8_t> bytes, const std::string& name) {
     checkJpegTables(bytes, name);
+    checkPngHeader(bytes, name);
     Extent2 extent;
     int channels = 0;
     if (!stbi_info_from_memory(bytes.data(), lengthOf(bytes, name), &extent.width, &extent.height, &channels))
         throwUnreadable(name);
-    if (extent.empty() || extent.width > kMaxDecodedSide || extent.height > kMaxDecodedSide)
-        throwBadInput({"image has an impossible size", name, fmt::format("1 to {} a side", kMaxDecodedSide),
-                       fmt::format("{}x{}", extent.width, extent.height)});
+    checkSides(static_cast<uint32_t>(extent.width), static_cast<uint32_t>(extent.height), name);
     return extent;
 }
 

@@ -56,6 +56,26 @@ TEST(Decode, DamageIsRefusedByName) {
     expectError(ErrorKind::BadInput, [&] { decodeImage8(std::span(png).first(png.size() / 2), "cut"); }, {"cut"});
 }
 
+TEST(Decode, SizesThatAreRefusedAreSaid) {
+    const auto expectRefused = [](uint32_t width, uint32_t height, const std::initializer_list<std::string>& parts) {
+        std::vector<uint8_t> png = encodePng(test::noiseImage8({30, 30}));
+        for (size_t byte = 0; byte < 4; ++byte) {
+            png[16 + byte] = static_cast<uint8_t>(width >> (24 - 8 * byte));
+            png[20 + byte] = static_cast<uint8_t>(height >> (24 - 8 * byte));
+        }
+        expectError(
+            ErrorKind::BadInput, [&] { decodeImage8(png, "big.png"); }, parts);
+    };
+    expectRefused(40000, 1, {"big.png", "expected 1 to 32768 a side, found 40000x1"});
+    expectRefused(uint32_t(1) << 30, 1, {"found 1073741824x1"});
+    expectRefused(0, 1, {"found 0x1"});
+    expectRefused(30000, 30000, {"image is too large", "expected at most ", " pixels, found 30000x30000"});
+
+    std::vector<uint8_t> bmp = smallBmp();
+    bmp[19] = 0x9c, bmp[18] = 0x40;
+    expectError(ErrorKind::BadInput, [&] { decodeImage8(bmp, "big.bmp"); }, {"found 40000x1"});
+}
+
 TEST(Decode, JpegsOpen) {
     const char* assets = std::getenv("LUMISCOPE_ASSETS");
     const std::filesystem::path folder = assets ? assets : LUMISCOPE_SOURCE_DIR "/../shared/assets";
