@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/obj/face_check.h"
 #include "scene/reach.h"
 
 namespace lumi {
@@ -57,15 +58,20 @@ std::string_view faultOf(std::string_view line, int least) {
 void checkObjNumbers(std::string_view text, FileWarnings& warnings) {
     const std::string& where = warnings.file();
     size_t lineNumber = 0, faults = 0, first = 0;
+    FaceCheck faces;
     for (size_t at = 0; at < text.size();) {
         const size_t end = std::min(text.find('\n', at), text.size());
         std::string_view line = text.substr(at, end - at);
         at = end + 1;
         ++lineNumber;
         const size_t begin = line.find_first_not_of(kSpace);
-        if (begin == line.npos || line[begin] != 'v') continue;
+        if (begin == line.npos || (line[begin] != 'v' && line[begin] != 'f')) continue;
         const std::string_view kind = nextWord(line);
-        if (kind == "v") {
+        if (kind == "f") {
+            for (std::string_view corner = nextWord(line); !corner.empty(); corner = nextWord(line))
+                faces.addCorner(corner, where, lineNumber);
+        } else if (kind == "v") {
+            faces.addElement(0);
             if (const std::string_view fault = faultOf(line, 3); !fault.empty())
                 throwBadInput({.what = "the position of a vertex is no place",
                                .where = where + ":" + std::to_string(lineNumber),
@@ -77,10 +83,12 @@ void checkObjNumbers(std::string_view text, FileWarnings& warnings) {
                                .expected = reachText(),
                                .found = std::string(far)});
         } else if (kind == "vt" || kind == "vn") {
+            faces.addElement(kind == "vt" ? 1 : 2);
             if (faultOf(line, kind == "vt" ? 1 : 3).empty()) continue;
             if (faults++ == 0) first = lineNumber;
         }
     }
+    faces.finish(where);
     if (faults > 0)
         warnings.warnWhole(where + ":" + std::to_string(first) + ": not finite numbers, read as 0" +
                            (faults > 1 ? ", as on " + std::to_string(faults - 1) + " more lines" : std::string()));

@@ -201,6 +201,18 @@ TEST(Obj, NumbersThatAreNoneAreRefusedOrCleanedWithTheirLine) {
 TEST(Obj, BadIndicesAreRefused) {
     expectError(ErrorKind::BadInput, [] { loadText("v 0 0 0\nv 1 0 0\nf 1 2 9\n"); }, {"a.obj"});
     expectError(ErrorKind::BadInput, [] { loadText("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/4 2/5 3/6\n"); }, {"a.obj"});
+    const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    const auto refused = [](const std::string& text, const std::initializer_list<std::string>& parts) {
+        expectError(
+            ErrorKind::BadInput, [&] { loadText(text); }, parts);
+    };
+    refused(three + "f 1 2 3\nf -1 -2 -9\n", {"a.obj:5: a face refers to a vertex", "expected -3 to -1, found -9"});
+    refused(three + "f 1 2 3\nf 1 2 4 # 9\nf 2 3 1\n", {"a.obj:5: ", "expected 1 to 3, found 4"});
+    refused(three + "vt 0 0\nf 1/1 2/1 3/7\n", {"a.obj:5: ", "texture coordinate", "1 to 1, found 7"});
+    refused(three + "f 1//-1 2//-1 3//-1\nvn 0 0 1\n", {"a.obj:4: ", "a normal", "none before it, found -1"});
+    refused(three + "f 1//1 2//1 3//1\n", {"a.obj:4: ", "a normal", "expected none", "found 1"});
+    EXPECT_EQ(loadText("f 1//1 2//1 3//1\n" + three + "vn 0 0 1\nf -3 -2 -1\n").triangleCount(), 2);
+
     std::string wide = "v 0 0 0\n";
     std::string face = "f";
     for (int i = 0; i < 300; ++i) {
