@@ -22,6 +22,11 @@ void FaceCheck::addCorner(std::string_view corner, const std::string& file, size
         const std::string_view word = corner.substr(0, corner.find('/'));
         int64_t number = 0;  // stays so where none is written
         std::from_chars(word.data(), word.data() + word.size(), number);
+        if (number == 0 && &kind == kinds_.data())
+            throwBadInput({.what = "a face has a corner without a vertex",
+                           .where = file + ":" + std::to_string(line),
+                           .expected = "a number from 1, or below 0",
+                           .found = std::string(corner.substr(0, 40))});
         if (number < -kind.count)
             fail(kind.name, file, line,
                  kind.count > 0 ? "-" + std::to_string(kind.count) + " to -1" : "none, since there are none before it",

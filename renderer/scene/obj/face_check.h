@@ -12,7 +12,8 @@ class FaceCheck {
 public:
     /// A `v` (0), `vt` (1) or `vn` (2) line.
     void addElement(size_t kind) { ++kinds_[kind].count; }
-    /// One word of an `f` line. Throws Error(BadInput), headed by the file and the line, if it counts back too far.
+    /// One word of an `f` line. Throws Error(BadInput), headed by the file and the line, if it has no vertex or counts
+    /// back too far.
     void addCorner(std::string_view corner, const std::string& file, size_t line);
     /// At the file's end. Throws likewise for the largest number if there are fewer.
     void finish(const std::string& file) const;

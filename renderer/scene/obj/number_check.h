@@ -6,9 +6,9 @@
 namespace lumi {
 
 /// Looks at every `v`, `vt`, `vn` and `f` line of an OBJ file's text, since tinyobj reads what is no number as 0.
-/// Throws Error(BadInput) headed by the file and the line for a position with fewer than three numbers or with something
-/// that is no finite number, and for a face that refers to what is not there; texture coordinates and normals that are
-/// no numbers are one warning, and read as 0.
+/// Throws Error(BadInput) headed by the file and the line for a position with fewer than three numbers or with
+/// something that is no finite number, and for a face that refers to what is not there; texture coordinates and normals
+/// that are no numbers are one warning, and read as 0.
 void checkObjNumbers(std::string_view text, FileWarnings& warnings);
 
 }  // namespace lumi

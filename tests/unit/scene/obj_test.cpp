@@ -211,6 +211,8 @@ TEST(Obj, BadIndicesAreRefused) {
     refused(three + "vt 0 0\nf 1/1 2/1 3/7\n", {"a.obj:5: ", "texture coordinate", "1 to 1, found 7"});
     refused(three + "f 1//-1 2//-1 3//-1\nvn 0 0 1\n", {"a.obj:4: ", "a normal", "none before it, found -1"});
     refused(three + "f 1//1 2//1 3//1\n", {"a.obj:4: ", "a normal", "expected none", "found 1"});
+    refused(three + "f 1 2 0/1\n", {"a.obj:4: ", "without a vertex", "found 0/1"});
+    refused(three + "f 1 2 c\n", {"a.obj:4: ", "without a vertex", "found c"});
     EXPECT_EQ(loadText("f 1//1 2//1 3//1\n" + three + "vn 0 0 1\nf -3 -2 -1\n").triangleCount(), 2);
 
     std::string wide = "v 0 0 0\n";
