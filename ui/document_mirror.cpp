@@ -1,8 +1,40 @@
 #include "ui/document_mirror.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace lumi {
+
+void DocumentMirror::Table::fill(std::vector<ParameterInfo> parameters) {
+    parameters_ = std::move(parameters);
+    byId_.clear();
+    for (const ParameterInfo& info : parameters_) byId_.push_back(&info);
+    std::sort(byId_.begin(), byId_.end(), [](const ParameterInfo* a, const ParameterInfo* b) { return a->id < b->id; });
+}
+
+std::vector<const ParameterInfo*>::const_iterator DocumentMirror::Table::lowest(const std::string& id) const {
+    return std::lower_bound(byId_.begin(), byId_.end(), id,
+                            [](const ParameterInfo* info, const std::string& wanted) { return info->id < wanted; });
+}
+
+std::vector<const ParameterInfo*> DocumentMirror::Table::group(const std::string& prefix) const {
+    const auto first = lowest(prefix);
+    const auto last =
+        std::find_if(first, byId_.end(), [&](const ParameterInfo* info) { return !info->id.starts_with(prefix); });
+    std::vector<const ParameterInfo*> found(first, last);
+    std::sort(found.begin(), found.end());  // they lie in one array, in order
+    return found;
+}
+
+bool DocumentMirror::Table::hasGroup(const std::string& prefix) const {
+    const auto first = lowest(prefix);
+    return first != byId_.end() && (*first)->id.starts_with(prefix);
+}
+
+const ParameterInfo* DocumentMirror::Table::find(const std::string& id) const {
+    const auto place = lowest(id);
+    return place != byId_.end() && (*place)->id == id ? *place : nullptr;
+}
 
 bool DocumentMirror::refresh(const Session& session) {
     if (!session.hasScene()) return false;
@@ -10,11 +42,20 @@ bool DocumentMirror::refresh(const Session& session) {
     if (document_ && revision == revision_) return false;
     revision_ = revision;
     document_.emplace(session.document());
-    scene_ = document_->scene();
     camera_ = document_->camera();
-    parameters_ = document_->list();
-    index_.clear();
-    for (size_t i = 0; i < parameters_.size(); ++i) index_.emplace(parameters_[i].id, i);
+    others_.fill(document_->list("", Document::Part::Others));
+    if (scene_ != document_->scene()) {
+        scene_ = document_->scene();
+        ofScene_.fill(document_->list("", Document::Part::OfScene));
+        names_.clear();
+        for (const ParameterInfo& info : ofScene_.all()) {
+            const size_t begin = info.id.find('.') + 1, end = info.id.rfind('.');
+            if (end < begin) continue;
+            std::vector<std::string>& names = names_[info.id.substr(0, begin - 1)];
+            std::string name = info.id.substr(begin, end - begin);
+            if (names.empty() || names.back() != name) names.push_back(std::move(name));
+        }
+    }
     changed_.clear();
     const nlohmann::json changes = document_->changedValues();
     for (const auto& [id, value] : changes.items()) changed_.insert(id);
@@ -22,15 +63,25 @@ bool DocumentMirror::refresh(const Session& session) {
 }
 
 std::vector<const ParameterInfo*> DocumentMirror::group(const std::string& prefix) const {
-    std::vector<const ParameterInfo*> found;
-    for (const ParameterInfo& info : parameters_)
-        if (info.id.compare(0, prefix.size(), prefix) == 0) found.push_back(&info);
+    std::vector<const ParameterInfo*> found = others_.group(prefix);
+    const std::vector<const ParameterInfo*> ofScene = ofScene_.group(prefix);
+    found.insert(found.end(), ofScene.begin(), ofScene.end());
     return found;
 }
 
+bool DocumentMirror::hasGroup(const std::string& prefix) const {
+    return others_.hasGroup(prefix) || ofScene_.hasGroup(prefix);
+}
+
+const std::vector<std::string>& DocumentMirror::names(const std::string& kind) const {
+    static const std::vector<std::string> none;
+    const auto found = names_.find(kind);
+    return found == names_.end() ? none : found->second;
+}
+
 const ParameterInfo* DocumentMirror::find(const std::string& id) const {
-    const auto entry = index_.find(id);
-    return entry == index_.end() ? nullptr : &parameters_[entry->second];
+    const ParameterInfo* found = others_.find(id);
+    return found ? found : ofScene_.find(id);
 }
 
 std::string DocumentMirror::text(const std::string& id) const {

@@ -1,8 +1,8 @@
 #pragma once
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "session/session.h"
@@ -22,6 +22,9 @@ public:
 
     /// Declarations with present values, in order, of ids that begin with `prefix`.
     std::vector<const ParameterInfo*> group(const std::string& prefix) const;
+    bool hasGroup(const std::string& prefix) const;
+    /// What a scene has of a kind, "material" or "light": of ids "<kind>.<name>.<parameter>" the names, in order.
+    const std::vector<std::string>& names(const std::string& kind) const;
     const ParameterInfo* find(const std::string& id) const;
     bool changed(const std::string& id) const { return changed_.count(id) > 0; }
     const std::set<std::string>& changedIds() const { return changed_; }
@@ -30,11 +33,27 @@ public:
     float number(const std::string& id, float fallback) const;
 
 private:
+    /// Parameters, found by how their ids begin.
+    class Table {
+    public:
+        void fill(std::vector<ParameterInfo> parameters);
+        std::vector<const ParameterInfo*> group(const std::string& prefix) const;
+        bool hasGroup(const std::string& prefix) const;
+        const ParameterInfo* find(const std::string& id) const;
+        const std::vector<ParameterInfo>& all() const { return parameters_; }
+
+    private:
+        /// The first place in byId_ whose id is not less.
+        std::vector<const ParameterInfo*>::const_iterator lowest(const std::string& id) const;
+        std::vector<ParameterInfo> parameters_;
+        std::vector<const ParameterInfo*> byId_;  ///< sorted
+    };
+
     std::optional<Document> document_;
     std::shared_ptr<const Scene> scene_;
     Camera camera_;
-    std::vector<ParameterInfo> parameters_;
-    std::unordered_map<std::string, size_t> index_;
+    Table ofScene_, others_;  ///< scenes may have very many parameters, and few change from frame to frame
+    std::map<std::string, std::vector<std::string>> names_;
     std::set<std::string> changed_;
     uint64_t revision_ = 0;
 };

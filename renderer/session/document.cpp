@@ -267,9 +267,9 @@ Redo Document::reset(std::vector<std::string> ids) {
     return worst;
 }
 
-std::vector<ParameterInfo> Document::list(const std::string& filter) const {
+std::vector<ParameterInfo> Document::list(const std::string& filter, Part part) const {
     std::vector<ParameterInfo> all;
-    for (const DocumentFields::Group& group : DocumentFields::groups(*this, filter))
+    for (const DocumentFields::Group& group : DocumentFields::groups(*this, filter, part))
         for (ParameterInfo& info : listParameters(group.describe))
             if (info.id.compare(0, filter.size(), filter) == 0) all.push_back(std::move(info));
     return all;
@@ -294,18 +294,18 @@ json Document::difference(const Document& from, const Document& to) {
 
     const bool otherSky = from.environmentDigest_ != to.environmentDigest_ ||
                           from.edited_->environment.file != to.edited_->environment.file;
-    const bool sameScene = from.edited_ == to.edited_;
-    const auto isTold = [&](const DocumentFields::Group& group) {
-        return !(sameScene && group.ofScene) && group.prefix != "camera." && group.prefix != "time";
+    const Part part = from.edited_ == to.edited_ ? Part::Others : Part::All;
+    const auto isTold = [](const DocumentFields::Group& group) {
+        return group.prefix != "camera." && group.prefix != "time";
     };
     std::map<std::string, ParameterValue> before;
     std::set<std::string> known;
-    for (const DocumentFields::Group& group : DocumentFields::groups(from, "")) {
+    for (const DocumentFields::Group& group : DocumentFields::groups(from, "", part)) {
         if (!isTold(group)) continue;
         known.insert(group.prefix);
         for (const ParameterInfo& info : listParameters(group.describe)) before[info.id] = info.value;
     }
-    for (const DocumentFields::Group& group : DocumentFields::groups(to, "")) {
+    for (const DocumentFields::Group& group : DocumentFields::groups(to, "", part)) {
         if (!isTold(group)) continue;
         // A module that only `to` shows: `from` knows its values if it is asked for them.
         if (!known.contains(group.prefix))

@@ -84,8 +84,10 @@ public:
     void setTime(float seconds) { time_ = seconds; }
     ParameterValue get(const std::string& id) const;
     ParameterValue initial(const std::string& id) const;  ///< before any change: what "reset" goes back to
+    /// Which ids: those of materials, lights and the sky, whose values are the same while scene() is; or the others.
+    enum class Part { All, OfScene, Others };
     /// Every id with its declaration and present value. `group` filters by prefix ("path.", "svgf@b.").
-    std::vector<ParameterInfo> list(const std::string& group = "") const;
+    std::vector<ParameterInfo> list(const std::string& group = "", Part part = Part::All) const;
     /// Values that differ from the scene's own defaults, as {"id": value}; applying them to a fresh Document of the
     /// same scene gives this one.
     nlohmann::json changedValues() const;

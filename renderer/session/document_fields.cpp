@@ -38,13 +38,20 @@ void checkBuffer(const std::string& instance, const std::string& buffer, const s
                 near.empty() ? "a name from `lumiscope list buffers`" : '"' + near + '"', ""});
 }
 
-std::vector<DocumentFields::Group> DocumentFields::groups(const Document& document, const std::string& filter) {
+std::vector<DocumentFields::Group> DocumentFields::groups(const Document& document, const std::string& filter,
+                                                          Document::Part part) {
+    using Part = Document::Part;
     std::vector<Group> groups;
-    addSettings(document, filter, groups);
-    addCamera(document, filter, groups);
-    addScene(document, filter, groups);
-    addViews(document, filter, groups);
-    addInstances(document, filter, groups);
+    if (part != Part::OfScene) {
+        addSettings(document, filter, groups);
+        addCamera(document, filter, groups);
+        addChoice(document, filter, groups);
+    }
+    if (part != Part::Others) addScene(document, filter, groups);
+    if (part != Part::OfScene) {
+        addViews(document, filter, groups);
+        addInstances(document, filter, groups);
+    }
     return groups;
 }
 
@@ -156,12 +163,14 @@ void DocumentFields::readSky(Document& document, Environment& sky, const std::st
     document.environmentDigest_ = digest(readFile(path));
 }
 
+void DocumentFields::addChoice(const Document& document, const std::string& filter, std::vector<Group>& groups) {
+    if (!concerns("scene.", filter)) return;
+    auto copy = std::make_shared<SceneChoice>(document.sceneChoice_);
+    groups.push_back({"scene.", [copy](ParameterVisitor& v) { copy->describe(v); },
+                      [copy](Document& d, const auto&, const auto&, const auto&) { d.sceneChoice_ = *copy; }});
+}
+
 void DocumentFields::addScene(const Document& document, const std::string& filter, std::vector<Group>& groups) {
-    if (concerns("scene.", filter)) {
-        auto copy = std::make_shared<SceneChoice>(document.sceneChoice_);
-        groups.push_back({"scene.", [copy](ParameterVisitor& v) { copy->describe(v); },
-                          [copy](Document& d, const auto&, const auto&, const auto&) { d.sceneChoice_ = *copy; }});
-    }
     if (concerns("environment.", filter)) {
         auto copy = std::make_shared<Environment>(document.edited_->environment);
         groups.push_back({"environment.",
@@ -179,8 +188,7 @@ void DocumentFields::addScene(const Document& document, const std::string& filte
                               if (name == "file") readSky(d, *copy, where);
                               copy->chooseStandIn();
                               edit(d).environment = *copy;
-                          },
-                          true});
+                          }});
     }
     for (size_t i = 0; i < document.names_->materials.size(); ++i) {
         const std::string prefix = "material." + document.names_->materials[i] + ".";
@@ -192,19 +200,19 @@ void DocumentFields::addScene(const Document& document, const std::string& filte
                  RenamingVisitor renamed(v, prefix);
                  copy->describe(renamed);
              },
-             [copy, i](Document& d, const auto&, const auto&, const auto&) { edit(d).materials[i] = *copy; }, true});
+             [copy, i](Document& d, const auto&, const auto&, const auto&) { edit(d).materials[i] = *copy; }});
     }
     for (size_t i = 0; i < document.names_->lights.size(); ++i) {
         const std::string prefix = "light." + document.names_->lights[i] + ".";
         if (!concerns(prefix, filter)) continue;
         auto copy = std::make_shared<Light>(document.edited_->lights[i]);
-        groups.push_back({prefix,
-                          [copy, prefix](ParameterVisitor& v) {
-                              RenamingVisitor renamed(v, prefix);
-                              copy->describe(renamed);
-                          },
-                          [copy, i](Document& d, const auto&, const auto&, const auto&) { edit(d).lights[i] = *copy; },
-                          true});
+        groups.push_back(
+            {prefix,
+             [copy, prefix](ParameterVisitor& v) {
+                 RenamingVisitor renamed(v, prefix);
+                 copy->describe(renamed);
+             },
+             [copy, i](Document& d, const auto&, const auto&, const auto&) { edit(d).lights[i] = *copy; }});
     }
 }
 

@@ -17,16 +17,17 @@ public:
         /// Puts the copy back; `name` is the id without its prefix.
         std::function<void(Document&, const std::string& name, const ParameterValue& value, const std::string& where)>
             commit;
-        bool ofScene = false;  ///< unchanged while Document::scene() is
     };
 
     /// Groups that hold ids beginning with `filter`, or that the id `filter` belongs to.
-    static std::vector<Group> groups(const Document& document, const std::string& filter);
+    static std::vector<Group> groups(const Document& document, const std::string& filter,
+                                     Document::Part part = Document::Part::All);
 
 private:
     friend class Document;
     static void addSettings(const Document&, const std::string& filter, std::vector<Group>&);
     static void addCamera(const Document&, const std::string& filter, std::vector<Group>&);
+    static void addChoice(const Document&, const std::string& filter, std::vector<Group>&);
     static void addScene(const Document&, const std::string& filter, std::vector<Group>&);
     static void addViews(const Document&, const std::string& filter, std::vector<Group>&);
     static void addInstances(const Document&, const std::string& filter, std::vector<Group>&);

@@ -50,6 +50,45 @@ TEST_F(AppStateTest, AnotherSceneGoesOnWithoutTheReferenceOfTheOneBefore) {
     EXPECT_FALSE(state.metrics.reference().working);
 }
 
+TEST_F(AppStateTest, PanelsReadTheDocumentsParametersAsTheyStand) {
+    open();
+    const auto expectSame = [&] {
+        state.beginFrame();
+        const Document document = session.document();
+        std::map<std::string, std::vector<std::string>> names;
+        for (const ParameterInfo& info : document.list()) {
+            const ParameterInfo* found = state.document.find(info.id);
+            ASSERT_TRUE(found) << info.id;
+            EXPECT_EQ(found->value, info.value) << info.id;
+            const size_t first = info.id.find('.'), last = info.id.rfind('.');
+            if (first == last) continue;
+            std::vector<std::string>& ofKind = names[info.id.substr(0, first)];
+            const std::string name = info.id.substr(first + 1, last - first - 1);
+            if (std::count(ofKind.begin(), ofKind.end(), name) == 0) ofKind.push_back(name);
+        }
+        EXPECT_EQ(state.document.names("material"), names.at("material"));
+        EXPECT_TRUE(state.document.names("nothing").empty());
+        for (const std::string prefix : {"material.", "camera.", "view.0.", "path.max-depth", "environment."}) {
+            const std::vector<ParameterInfo> expected = document.list(prefix);
+            const std::vector<const ParameterInfo*> group = state.document.group(prefix);
+            ASSERT_EQ(group.size(), expected.size()) << prefix;
+            for (size_t i = 0; i < group.size(); ++i) EXPECT_EQ(group[i]->id, expected[i].id);
+            EXPECT_TRUE(state.document.hasGroup(prefix));
+        }
+        EXPECT_FALSE(state.document.find("materia"));
+        EXPECT_FALSE(state.document.hasGroup("materials."));
+        EXPECT_TRUE(state.document.group("zz").empty());
+    };
+    expectSame();
+    const std::string roughness = "material." + state.document.names("material").back() + ".roughness";
+    state.set(roughness, 0.125f);
+    state.set("path.max-depth", 3);
+    expectSame();
+    EXPECT_EQ(state.document.number(roughness, 0), 0.125f);
+    EXPECT_EQ(state.document.changedIds(),
+              (std::set<std::string>{roughness, "path.max-depth", "render.height", "render.width"}));
+}
+
 TEST_F(AppStateTest, WhoPausesByHandStaysPaused) {
     makeLongReference();
     state.setRendering(true);

@@ -81,7 +81,7 @@ void drawRenderPanel(AppState& state) {
     bool any = false;
     for (int pane = 0; pane < state.paneCount(); ++pane) {
         const std::string instance = state.module(pane);
-        if (!drawn.insert(instance).second || state.document.group(instance + ".").empty()) continue;
+        if (!drawn.insert(instance).second || !state.document.hasGroup(instance + ".")) continue;
         const std::string title =
             std::string(findModule(instance).title) + (instance.find('@') == std::string::npos ? "" : "  " + instance);
         any |= drawGroup(state, title.c_str(), instance + ".");

@@ -30,15 +30,10 @@ void drawCounts(const Scene& scene) {
 
 /// Parameters of "<kind>.<name>.<parameter>": one folding row a name.
 void drawNamed(AppState& state, const char* title, const std::string& kind) {
-    const auto all = state.document.group(kind + ".");
-    if (all.empty() || !section(title, false)) return;
-    std::string drawn;
-    for (const ParameterInfo* info : all) {
-        const std::string& id = info->id;
-        const std::string name = id.substr(0, id.rfind('.'));
-        if (name == drawn) continue;
-        drawn = name;
-        const std::string label = name.substr(kind.size() + 1);
+    const std::vector<std::string>& labels = state.document.names(kind);
+    if (labels.empty() || !section(title, false)) return;
+    for (const std::string& label : labels) {
+        const std::string name = kind + "." + label;
         ImGui::SetNextItemOpen(false, ImGuiCond_Once);
         if (ImGui::TreeNodeEx((label + "##" + name).c_str(),
                               ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_FramePadding)) {
@@ -57,11 +52,10 @@ void drawScenePanel(AppState& state) {
     const Scene* scene = state.document.scene();
     if (section("Cameras")) drawCameras(state);
     if (section("Camera settings", false)) parameterRows(state, "camera.");
-    if (!state.document.group("environment.").empty() && section("Environment", false))
-        parameterRows(state, "environment.");
+    if (state.document.hasGroup("environment.") && section("Environment", false)) parameterRows(state, "environment.");
     drawNamed(state, "Lights", "light");
     drawNamed(state, "Materials", "material");
-    if (!state.document.group("scene.").empty() && section("Scene, variant, animation", false))
+    if (state.document.hasGroup("scene.") && section("Scene, variant, animation", false))
         parameterRows(state, "scene.");
     if (scene && section("About this scene")) drawCounts(*scene);
 }

@@ -74,6 +74,28 @@ TEST(Document, EveryIdCanBeReadAndSetToItself) {
     EXPECT_TRUE(document.changedValues().empty()) << document.changedValues().dump();
 }
 
+TEST(Document, WhatIsOfTheSceneIsListedApart) {
+    const auto scene = tinyScene();
+    Document document(scene);
+    std::vector<std::string> all, parts;
+    for (const ParameterInfo& info : document.list()) all.push_back(info.id);
+    for (const ParameterInfo& info : document.list("", Document::Part::OfScene)) {
+        parts.push_back(info.id);
+        const std::string kind = info.id.substr(0, info.id.find('.'));
+        EXPECT_TRUE(kind == "material" || kind == "light" || kind == "environment") << info.id;
+        document.set(info.id, info.value);
+    }
+    EXPECT_FALSE(parts.empty());
+    for (const ParameterInfo& info : document.list("", Document::Part::Others)) {
+        parts.push_back(info.id);
+        document.set(info.id, info.value);
+        EXPECT_EQ(document.scene(), scene) << info.id << " makes another scene of it";
+    }
+    std::sort(all.begin(), all.end());
+    std::sort(parts.begin(), parts.end());
+    EXPECT_EQ(all, parts);
+}
+
 TEST(Document, EditsReachTheSceneAndLeaveTheLoadedOneAlone) {
     Document document(tinyScene());
     const auto loaded = document.loadedScene();
