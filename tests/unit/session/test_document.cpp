@@ -77,23 +77,18 @@ TEST(Document, EveryIdCanBeReadAndSetToItself) {
 TEST(Document, WhatIsOfTheSceneIsListedApart) {
     const auto scene = tinyScene();
     Document document(scene);
-    std::vector<std::string> all, parts;
-    for (const ParameterInfo& info : document.list()) all.push_back(info.id);
+    std::set<std::string> parts;
     for (const ParameterInfo& info : document.list("", Document::Part::OfScene)) {
-        parts.push_back(info.id);
+        parts.insert(info.id);
         const std::string kind = info.id.substr(0, info.id.find('.'));
         EXPECT_TRUE(kind == "material" || kind == "light" || kind == "environment") << info.id;
-        document.set(info.id, info.value);
     }
-    EXPECT_FALSE(parts.empty());
     for (const ParameterInfo& info : document.list("", Document::Part::Others)) {
-        parts.push_back(info.id);
+        EXPECT_TRUE(parts.insert(info.id).second) << info.id << " is listed in both";
         document.set(info.id, info.value);
         EXPECT_EQ(document.scene(), scene) << info.id << " makes another scene of it";
     }
-    std::sort(all.begin(), all.end());
-    std::sort(parts.begin(), parts.end());
-    EXPECT_EQ(all, parts);
+    EXPECT_EQ(parts.size(), document.list().size());
 }
 
 TEST(Document, EditsReachTheSceneAndLeaveTheLoadedOneAlone) {
