@@ -25,15 +25,11 @@ std::optional<std::vector<uint32_t>> leftAlong(const TraceScene& scene, const Ve
         RawHit hit;
         intersectRays(scene.embree, {&ray, 1}, {&hit, 1}, Coherence::Incoherent);
         if (!hit.valid()) return left;
-        const InstanceRecord& instance = scene.tables.instances[hit.instance];
-        const uint32_t index = instance.body >= 0 ? 0 : instance.materialOf(hit.primitive);
-        if (instance.body >= 0 || !scene.tables.materials[index].solid) {
-            ray.origin += ray.direction * (hit.distance * 1.00001f + 1e-6f);
-            continue;
-        }
         const SurfacePoint point = surfacePoint(scene.tables, hit, ray.origin + ray.direction * hit.distance, ray.time);
-        const SurfaceGeometry at = surfaceGeometry(scene.tables, point, -direction, 0);
+        const Surface at = evaluateSurface(scene.tables, point, -direction, 0);
         ray.origin = offsetOrigin(at.position, at.frontFace ? -at.outwardNormal : at.outwardNormal, at.offset);
+        const uint32_t index = at.material;
+        if (at.body >= 0 || !scene.tables.materials[index].solid) continue;
         const auto earlier = std::find(entered.rbegin(), entered.rend(), index);
         if (at.frontFace) entered.push_back(index);
         else if (earlier != entered.rend()) entered.erase(std::next(earlier).base());
@@ -52,13 +48,28 @@ Vec3 latticeDirection(int k) {
 }  // namespace
 
 MediumStack mediaAround(const TraceScene& scene, const Vec3& place, float time) {
-    std::map<std::vector<uint32_t>, int> votes;
-    for (int k = 0; k < kDirections; ++k)
-        if (const auto left = leftAlong(scene, place, latticeDirection(k), time)) ++votes[*left];
+    // Each solid is voted on by itself: directions may leave solids that overlap in another order. Of one material
+    // there may be several around each other.
+    struct Votes {
+        int count = 0, orders = 0;
+    };
+    std::map<std::pair<uint32_t, int>, Votes> votes;
+    for (int k = 0; k < kDirections; ++k) {
+        std::map<uint32_t, int> copies;
+        int order = 0;
+        for (const uint32_t material :
+             leftAlong(scene, place, latticeDirection(k), time).value_or(std::vector<uint32_t>())) {
+            Votes& of = votes[{material, copies[material]++}];
+            ++of.count, of.orders += order++;
+        }
+    }
+    std::vector<std::pair<float, uint32_t>> around;  // by how early they are left on the average
+    for (const auto& [solid, of] : votes)
+        if (of.count >= kLeastAgreeing)
+            around.emplace_back(static_cast<float>(of.orders) / static_cast<float>(of.count), solid.first);
+    std::sort(around.rbegin(), around.rend());
     MediumStack media;
-    for (const auto& [left, count] : votes)
-        if (count >= kLeastAgreeing)
-            for (auto solid = left.rbegin(); solid != left.rend(); ++solid) media.enter(*solid);
+    for (const auto& [order, material] : around) media.enter(material);
     return media;
 }
 

@@ -87,6 +87,32 @@ TEST(Absorption, BeginsWhereTheCameraIs) {
     expectSeen(seenFromInside(inside, Vec3(0.1f, 0.4f, 0.2f), up), std::pow(0.25, 0.2));
 }
 
+// A basin five centimetres around the water, wherever the scene is.
+TEST(Absorption, BeginsWhereTheCameraIsFarFromTheOrigin) {
+    for (const Vec3 place : {Vec3(0), Vec3(-31, 5, 44), Vec3(100, 0, 100), Vec3(1000, -40, 7)}) {
+        TinyScene pool;
+        pool.add(boxMesh(Vec3(4, 1, 4)), tinted(), translation(place));
+        pool.add(boxMesh(Vec3(6, 1, 6)), lambert(0), translation(place + Vec3(0, -1.05f, 0)));
+        for (const float side : {-1.0f, 1.0f}) {
+            pool.add(boxMesh(Vec3(1, 1, 6)), lambert(0), translation(place + Vec3(2.55f * side, 0, 0)));
+            pool.add(boxMesh(Vec3(4, 1, 1)), lambert(0), translation(place + Vec3(0, 0, 2.55f * side)));
+        }
+        const Estimate e = seenFromInside(pool, place + Vec3(0.1f, -0.25f, 0.2f), Vec3(0, 1, 0));
+        EXPECT_NEAR(e.mean, std::pow(0.25, 1.5), 4e-3 * e.mean) << place.x;
+    }
+}
+
+// Rays leave them in either order.
+TEST(Absorption, BeginsInSolidsThatOverlap) {
+    TinyScene tiny;
+    tiny.add(boxMesh(Vec3(4)), tinted());
+    tiny.add(boxMesh(Vec3(4, 3.6f, 4)), tinted(), translation(Vec3(1, 0, 0)));
+    const Vec3 up(0, 1, 0);
+    expectSeen(seenFromInside(tiny, Vec3(0.5f, 1, 0.2f), up), std::pow(0.25, 2));
+    expectSeen(seenFromInside(tiny, Vec3(-1.5f, 1, 0.2f), up), std::pow(0.25, 2));   // in the first alone
+    expectSeen(seenFromInside(tiny, Vec3(2.5f, 1, 0.2f), up), std::pow(0.25, 1.6));  // in the other
+}
+
 // Panes of a room and the surface of a pool have no other side to be left through.
 TEST(Absorption, SheetsAreNoSolidsToBeginIn) {
     TinyScene room;
