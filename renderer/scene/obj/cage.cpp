@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 #include <string_view>
+#include <unordered_set>
 
 #include "base/error.h"
 #include "scene/obj/number_check.h"
@@ -24,44 +25,54 @@ float sharpnessAt(const Tag& tag, size_t i) {
 
 int firstInt(const Tag& tag) { return tag.intValues.empty() ? 0 : tag.intValues[0]; }
 
-void addCreases(const Tag& tag, SubdivisionCage& cage) {
+void addCreases(const Tag& tag, SubdivisionCage& cage, FileWarnings&) {
     for (size_t i = 0; i + 1 < tag.intValues.size(); ++i)
         cage.creases.push_back({static_cast<uint32_t>(tag.intValues[i]), static_cast<uint32_t>(tag.intValues[i + 1]),
                                 sharpnessAt(tag, i)});
 }
 
-void addCorners(const Tag& tag, SubdivisionCage& cage) {
+void addCorners(const Tag& tag, SubdivisionCage& cage, FileWarnings&) {
     for (size_t i = 0; i < tag.intValues.size(); ++i)
         cage.corners.push_back({static_cast<uint32_t>(tag.intValues[i]), sharpnessAt(tag, i)});
 }
 
-void addHoles(const Tag& tag, SubdivisionCage& cage) {
+void addHoles(const Tag& tag, SubdivisionCage& cage, FileWarnings&) {
     for (const int face : tag.intValues) cage.holes.push_back(static_cast<uint32_t>(face));
 }
 
-void setBoundary(const Tag& tag, SubdivisionCage& cage) {
+/// Is the tag's rule one of 0 to `last`? If not, it is said and the tag left out.
+bool isRule(const Tag& tag, int last, FileWarnings& warnings) {
+    if (firstInt(tag) >= 0 && firstInt(tag) <= last) return true;
+    warnings.warn(fmt::format("the subdivision tag \"{}\" has no rule {} (0 to {}) and is left out", tag.name,
+                              firstInt(tag), last));
+    return false;
+}
+
+void setBoundary(const Tag& tag, SubdivisionCage& cage, FileWarnings& warnings) {
     using Boundary = SubdivisionCage::Boundary;
     constexpr Boundary kRules[] = {Boundary::None, Boundary::EdgeAndCorner, Boundary::EdgeOnly};
-    if (const int rule = firstInt(tag); rule >= 0 && rule < 3) cage.boundary = kRules[rule];
+    if (isRule(tag, 2, warnings)) cage.boundary = kRules[firstInt(tag)];
 }
 
-void setFaceVarying(const Tag& tag, SubdivisionCage& cage) {
-    if (const int rule = firstInt(tag); rule >= 0 && rule < 6)
-        cage.faceVarying = static_cast<SubdivisionCage::FaceVarying>(rule);
+void setFaceVarying(const Tag& tag, SubdivisionCage& cage, FileWarnings& warnings) {
+    if (isRule(tag, 5, warnings)) cage.faceVarying = static_cast<SubdivisionCage::FaceVarying>(firstInt(tag));
 }
 
-void setCreaseMethod(const Tag& tag, SubdivisionCage& cage) {
-    cage.chaikin = !tag.stringValues.empty() && tag.stringValues[0] == "chaikin";
+void setCreaseMethod(const Tag& tag, SubdivisionCage& cage, FileWarnings& warnings) {
+    const std::string method = tag.stringValues.empty() ? "" : tag.stringValues[0];
+    cage.chaikin = method == "chaikin";
+    if (method != "chaikin" && method != "normal" && method != "uniform")
+        warnings.warn(fmt::format("the crease method \"{}\" is unknown; uniform creases are taken", method));
 }
 
 /// A number, or OpenSubdiv's own words: "catmark", "smooth".
-void setSmoothTriangles(const Tag& tag, SubdivisionCage& cage) {
+void setSmoothTriangles(const Tag& tag, SubdivisionCage& cage, FileWarnings&) {
     cage.smoothTriangles = tag.stringValues.empty() ? firstInt(tag) != 0 : tag.stringValues[0] == "smooth";
 }
 
 struct KnownTag {
     std::string_view name;
-    void (*apply)(const Tag&, SubdivisionCage&);  ///< null: of a cage, but left out
+    void (*apply)(const Tag&, SubdivisionCage&, FileWarnings&);  ///< null: of a cage, but left out
 };
 
 constexpr KnownTag kKnownTags[] = {
@@ -112,6 +123,23 @@ void addFaces(const tinyobj::mesh_t& mesh, uint32_t fallbackMaterial, const std:
         cage.faceVertices.push_back(static_cast<uint32_t>(index.vertex_index));
         cage.faceUvs.push_back(static_cast<uint32_t>(std::max(index.texcoord_index, 0)));
     }
+}
+
+/// OpenSubdiv skips creases where no edge is.
+void warnOfCreasesOffEdges(const SubdivisionCage& cage, FileWarnings& warnings) {
+    if (cage.creases.empty()) return;
+    const auto edge = [](uint32_t a, uint32_t b) { return uint64_t(std::min(a, b)) << 32 | std::max(a, b); };
+    std::unordered_set<uint64_t> edges;
+    for (size_t face = 0, first = 0; face < cage.faceSizes.size(); first += cage.faceSizes[face++])
+        for (uint32_t i = 0, size = cage.faceSizes[face]; i < size; ++i)
+            edges.insert(edge(cage.faceVertices[first + i], cage.faceVertices[first + (i + 1) % size]));
+    const auto isOff = [&](const auto& crease) { return !edges.contains(edge(crease.a, crease.b)); };
+    const auto first = std::ranges::find_if(cage.creases, isOff);
+    if (first == cage.creases.end()) return;
+    const auto count = std::ranges::count_if(cage.creases, isOff);
+    warnings.warn(fmt::format("{} along no edge, {} vertices {} and {}, left out",
+                              count == 1 ? "a crease" : fmt::format("{} creases", count),
+                              count == 1 ? "between" : "the first between", first->a, first->b));
 }
 
 bool everyCornerHasUv(const std::vector<tinyobj::shape_t>& shapes) {
@@ -174,8 +202,9 @@ SubdivisionCage cageOf(const tinyobj::attrib_t& attributes, const std::vector<ti
     for (const tinyobj::shape_t& shape : shapes) {
         addFaces(shape.mesh, fallbackMaterial, where, cage);
         for (const Tag& tag : shape.mesh.tags)
-            if (isApplied(tag)) knownTag(tag.name)->apply(tag, cage);
+            if (isApplied(tag)) knownTag(tag.name)->apply(tag, cage, warnings);
     }
+    warnOfCreasesOffEdges(cage, warnings);
     // Bilinear surfaces end where their cage ends, whatever the tags say.
     if (scheme == SubdivisionCage::Scheme::Bilinear) cage.boundary = SubdivisionCage::Boundary::EdgeAndCorner;
     warnOfOtherTags(shapes, warnings);

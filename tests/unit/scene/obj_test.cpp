@@ -261,6 +261,23 @@ TEST(ObjCage, TellsOfTagsThatItLeavesOut) {
     EXPECT_NE(log.warnings()[0].find("creese"), std::string::npos);
 }
 
+TEST(ObjCage, TellsOfTagsThatMeanNothing) {
+    const auto warning = [](const std::string& tags) {
+        MessageLog log;
+        loadText(kTwoFaces + tags, log, kRedAndGreen);
+        return log.warnings().empty() ? std::string() : log.warnings()[0];
+    };
+    const auto expectTold = [&](const std::string& tags, const std::string& part) {
+        EXPECT_NE(warning(tags).find(part), std::string::npos) << tags << warning(tags);
+    };
+    expectTold("t interpolateboundary 1/0/0 3\n", "\"interpolateboundary\" has no rule 3 (0 to 2)");
+    expectTold("t facevaryinginterpolateboundary 1/0/0 -1\n", "has no rule -1 (0 to 5)");
+    expectTold("t creasemethod 0/0/1 chaikn\n", "\"chaikn\"");
+    expectTold("t crease 2/1/0 0 4 3\n", "a crease along no edge, between vertices 0 and 4");
+    expectTold("t crease 3/1/0 0 1 3 2\nt crease 2/1/0 0 4 3\n", "2 creases along no edge, the first between");
+    EXPECT_EQ(warning("t crease 2/1/0 1 0 3\nt crease 2/1/0 4 1 2\n"), "");
+}
+
 TEST(ObjCage, CommentsAreNoTags) {
     const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
     for (const char* comment : {"#t he model, made by me\n", "#t corner of the room\n", "#t crease\n", "#t hole \n"}) {
