@@ -1,7 +1,9 @@
 #include "scene/obj/number_check.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <span>
 
 #include "base/error.h"
 #include "scene/obj/face_check.h"
@@ -10,12 +12,16 @@
 namespace lumi {
 namespace {
 
-constexpr std::string_view kSpace = " \t\r";
+constexpr std::string_view kSpace = " \t\r", kInitials = "vflp";
 
-/// The next word of a line, which is shortened by it; empty at its end or before a comment.
+bool isNumeric(std::string_view kind) {
+    return kind == "v" || kind == "vt" || kind == "vn" || kind == "f" || kind == "l" || kind == "p";
+}
+
+/// The next word of a line, which is shortened by it; empty at its end.
 std::string_view nextWord(std::string_view& line) {
     const size_t begin = line.find_first_not_of(kSpace);
-    if (begin == line.npos || line[begin] == '#') return {};
+    if (begin == line.npos) return {};
     line.remove_prefix(begin);
     const std::string_view word = line.substr(0, line.find_first_of(kSpace));
     line.remove_prefix(word.size());
@@ -55,21 +61,34 @@ std::string_view faultOf(std::string_view line, int least) {
 
 }  // namespace
 
-void checkObjNumbers(std::string_view text, FileWarnings& warnings) {
+void checkObjNumbers(std::string& text, FileWarnings& warnings) {
     const std::string& where = warnings.file();
     size_t lineNumber = 0, faults = 0, first = 0;
-    FaceCheck faces;
+    FaceCheck faces(warnings);
+    const auto inText = [&](std::string_view part) {
+        return std::span(text).subspan(static_cast<size_t>(part.data() - text.data()), part.size());
+    };
     for (size_t at = 0; at < text.size();) {
         const size_t end = std::min(text.find('\n', at), text.size());
-        std::string_view line = text.substr(at, end - at);
+        std::string_view line = std::string_view(text).substr(at, end - at);
         at = end + 1;
         ++lineNumber;
         const size_t begin = line.find_first_not_of(kSpace);
-        if (begin == line.npos || (line[begin] != 'v' && line[begin] != 'f')) continue;
+        if (begin == line.npos || kInitials.find(line[begin]) == kInitials.npos) continue;
         const std::string_view kind = nextWord(line);
+        if (!isNumeric(kind)) continue;
+        if (const size_t comment = line.find('#'); comment != line.npos) {
+            std::ranges::fill(inText(line.substr(comment)), ' ');
+            line = line.substr(0, comment);
+        }
         if (kind == "f") {
             for (std::string_view corner = nextWord(line); !corner.empty(); corner = nextWord(line))
-                faces.addCorner(corner, where, lineNumber);
+                faces.addCorner(inText(corner), lineNumber);
+        } else if (kind == "l" || kind == "p") {
+            // tinyobj refuses one without any corner.
+            if (line.find_first_not_of(kSpace) == line.npos) std::ranges::fill(inText(kind), ' ');
+            for (std::string_view corner = nextWord(line); !corner.empty(); corner = nextWord(line))
+                faces.keepVertex(inText(corner), lineNumber);
         } else if (kind == "v") {
             faces.addElement(0);
             if (const std::string_view fault = faultOf(line, 3); !fault.empty())
@@ -82,13 +101,13 @@ void checkObjNumbers(std::string_view text, FileWarnings& warnings) {
                                .where = where + ":" + std::to_string(lineNumber),
                                .expected = reachText(),
                                .found = std::string(far)});
-        } else if (kind == "vt" || kind == "vn") {
+        } else {
             faces.addElement(kind == "vt" ? 1 : 2);
             if (faultOf(line, kind == "vt" ? 1 : 3).empty()) continue;
             if (faults++ == 0) first = lineNumber;
         }
     }
-    faces.finish(where);
+    faces.finish();
     if (faults > 0)
         warnings.warnWhole(where + ":" + std::to_string(first) + ": not finite numbers, read as 0" +
                            (faults > 1 ? ", as on " + std::to_string(faults - 1) + " more lines" : std::string()));

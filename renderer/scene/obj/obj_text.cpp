@@ -28,9 +28,14 @@ bool isNumber(std::string_view word) {
     return code == std::errc() && end == word.data() + word.size();
 }
 
-bool isComment(std::string_view line) {
-    const size_t begin = line.find_first_not_of(kSpace);
-    return begin != line.npos && line[begin] == '#';
+/// Is the end of `line`, which continues what has `begun`, a comment? Behind names, a # is part of them.
+bool endsInComment(std::string_view begun, std::string_view line) {
+    constexpr std::string_view kNumeric[] = {"f", "l", "p", "v", "vt", "vn"};
+    const std::string_view start = begun.empty() ? line : begun;
+    const size_t begin = std::min(start.find_first_not_of(kSpace), start.size());
+    const std::string_view kind = start.substr(begin, start.find_first_of(kSpace, begin) - begin);
+    if (std::ranges::find(kNumeric, kind) != std::end(kNumeric)) return line.find('#') != line.npos;
+    return begun.empty() && kind.starts_with('#');
 }
 
 /// Calls visit(line, result) for the whole lines of `text`, without their ends, to append what takes their place.
@@ -46,7 +51,7 @@ std::string mapLines(std::string_view text, Visit&& visit) {
         const std::string_view line = text.substr(0, end);
         text.remove_prefix(end);
         text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<size_t>(1, text.size()));
-        if (line.ends_with('\\') && !text.empty() && (continued > 0 || !isComment(line))) {
+        if (line.ends_with('\\') && !text.empty() && !endsInComment(whole, line)) {
             whole += line.substr(0, line.size() - 1);
             whole += ' ';
             ++continued;

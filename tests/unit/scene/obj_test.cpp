@@ -209,7 +209,6 @@ TEST(Obj, BadIndicesAreRefused) {
     refused(three + "f 1 2 3\nf -1 -2 -9\n", {"a.obj:5: a face refers to a vertex", "expected -3 to -1, found -9"});
     refused(three + "f 1 2 3\nf 1 2 4 # 9\nf 2 3 1\n", {"a.obj:5: ", "expected 1 to 3, found 4"});
     refused(three + "vt 0 0\nf 1/1 2/1 3/7\n", {"a.obj:5: ", "texture coordinate", "1 to 1, found 7"});
-    refused(three + "f 1//-1 2//-1 3//-1\nvn 0 0 1\n", {"a.obj:4: ", "a normal", "none before it, found -1"});
     refused(three + "f 1//1 2//1 3//1\n", {"a.obj:4: ", "a normal", "expected none", "found 1"});
     refused(three + "f 1 2 0/1\n", {"a.obj:4: ", "without a vertex", "found 0/1"});
     refused(three + "f 1 2 c\n", {"a.obj:4: ", "without a vertex", "found c"});
