@@ -15,6 +15,7 @@
 #include "scene/gltf/meshopt.h"
 #include "scene/gltf/numbers.h"
 #include "scene/gltf/structure.h"
+#include "scene/gltf/uri.h"
 
 namespace lumi::gltf {
 namespace {
@@ -113,8 +114,10 @@ void Document::parse(std::span<const uint8_t> file) {
     std::string error, warning;
     const bool good = [&] {
         if (binary) {
-            const std::vector<uint8_t> glb = patched.empty() ? std::vector<uint8_t>() : withJsonChunk(file, patched);
-            const std::span<const uint8_t> whole = patched.empty() ? file : std::span<const uint8_t>(glb);
+            const bool isAsRead = patched.empty() && !hasOtherChunk(file);
+            const std::vector<uint8_t> glb =
+                isAsRead ? std::vector<uint8_t>() : withJsonChunk(file, patched.empty() ? std::string(json) : patched);
+            const std::span<const uint8_t> whole = isAsRead ? file : std::span<const uint8_t>(glb);
             return reader.LoadBinaryFromMemory(&model_, &error, &warning, whole.data(),
                                                static_cast<unsigned int>(whole.size()), kFolder);
         }
@@ -134,6 +137,7 @@ void Document::parse(std::span<const uint8_t> file) {
                           : !image.name.empty() ? image.name
                                                 : "image " + std::to_string(i);
     }
+    for (const Sources::ImageFault& fault : sources_.imageFaults) images_[fault.image].fault = fault.text;
 }
 
 std::string Document::checkedJson(std::string_view json, uint64_t chunkBytes) {
@@ -145,7 +149,7 @@ std::string Document::checkedJson(std::string_view json, uint64_t chunkBytes) {
     hasChanged |= checkNumbers(tree, warnings_);
     hasChanged |= makeReadable(tree);
     sources_ = checkSources(tree, path_.parent_path(), chunkBytes, name_);
-    if (!hasChanged && !sources_.hasCut) return {};
+    if (!hasChanged && !sources_.hasChanged) return {};
     return tree.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 

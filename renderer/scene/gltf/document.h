@@ -18,6 +18,7 @@ struct ImageSource {
     int bufferView = -1;         ///< inside a buffer, or -1
     std::vector<uint8_t> bytes;  ///< of a data URI
     std::string name;            ///< for messages
+    std::string fault;           ///< why there are none, if that is known
 };
 
 /// A parsed glTF file. Its JSON has the form of a glTF (checkStructure) and its buffers are complete; what the

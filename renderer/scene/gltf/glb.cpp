@@ -8,6 +8,9 @@
 namespace lumi::gltf {
 namespace {
 
+constexpr size_t kHeader = 20;  ///< the file's and its first chunk's
+constexpr uint32_t kJson = 0x4E4F534A, kBinary = 0x004E4942;
+
 uint32_t word(std::span<const uint8_t> file, size_t offset) {
     uint32_t value = 0;
     std::memcpy(&value, file.data() + offset, 4);
@@ -19,8 +22,7 @@ uint32_t word(std::span<const uint8_t> file, size_t offset) {
 bool isBinary(std::span<const uint8_t> file) { return file.size() >= 4 && std::memcmp(file.data(), "glTF", 4) == 0; }
 
 std::string_view jsonChunk(std::span<const uint8_t> file, const std::string& where) {
-    constexpr uint32_t kJson = 0x4E4F534A;
-    if (file.size() < 20)
+    if (file.size() < kHeader)
         throwBadInput({.what = "the GLB is truncated",
                        .where = where,
                        .expected = "a header of 20 bytes",
@@ -36,20 +38,26 @@ std::string_view jsonChunk(std::span<const uint8_t> file, const std::string& whe
                        .expected = std::to_string(word(file, 8)) + " bytes",
                        .found = std::to_string(file.size())});
     const uint64_t length = word(file, 12);
-    if (word(file, 16) != kJson || 20 + length > file.size())
+    if (word(file, 16) != kJson || kHeader + length > file.size())
         throwBadInput({.what = "the GLB's JSON chunk is damaged", .where = where});
-    return {reinterpret_cast<const char*>(file.data()) + 20, static_cast<size_t>(length)};
+    return {reinterpret_cast<const char*>(file.data()) + kHeader, static_cast<size_t>(length)};
+}
+
+bool hasOtherChunk(std::span<const uint8_t> file) {
+    const uint64_t header = uint64_t(kHeader) + word(file, 12);
+    return header + 8 <= word(file, 8) && (word(file, header + 4) != kBinary || word(file, header) == 0);
 }
 
 uint64_t binaryChunkBytes(std::span<const uint8_t> file) {
-    const uint64_t header = uint64_t(20) + word(file, 12), begin = header + 8;
-    return begin <= file.size() ? std::min<uint64_t>(word(file, header), file.size() - begin) : 0;
+    const uint64_t header = uint64_t(kHeader) + word(file, 12), begin = header + 8;
+    if (begin > word(file, 8) || hasOtherChunk(file)) return 0;
+    return std::min<uint64_t>(word(file, header), file.size() - begin);
 }
 
 std::vector<uint8_t> withJsonChunk(std::span<const uint8_t> file, std::string json) {
     json.resize((json.size() + 3) / 4 * 4, ' ');
-    constexpr size_t kHeader = 20;  // the file's and its first chunk's
-    const std::span<const uint8_t> rest = file.subspan(kHeader + word(file, 12));
+    std::span<const uint8_t> rest;
+    if (!hasOtherChunk(file)) rest = file.subspan(kHeader + word(file, 12));
     std::vector<uint8_t> out(kHeader + json.size() + rest.size());
     std::memcpy(out.data(), file.data(), kHeader);
     std::memcpy(out.data() + kHeader, json.data(), json.size());

@@ -2,30 +2,19 @@
 
 #include <tiny_gltf.h>
 
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "scene/gltf/json_guard.h"
+#include "scene/gltf/uri.h"
 
 namespace lumi::gltf {
 namespace {
 
 using Json = nlohmann::json;
 
-/// A file's name as it is meant [RFC 3986].
-std::string unescaped(std::string_view uri) {
-    std::string name;
-    for (size_t at = 0; at < uri.size(); ++at) {
-        unsigned char byte = 0;
-        const char* const hex = uri.data() + at + 1;
-        const bool escapes = uri[at] == '%' && at + 2 < uri.size();
-        if (escapes && std::from_chars(hex, hex + 2, byte, 16).ptr == hex + 2) name += static_cast<char>(byte), at += 2;
-        else name += uri[at];
-    }
-    return name;
-}
+constexpr const char* kBadCharacter = "the base64 of the data URI has a character that is none";
 
 class SourceChecker {
 public:
@@ -44,47 +33,60 @@ public:
         }
         auto& uri = buffer["uri"].get_ref<std::string&>();
         if (isDataUri(uri)) return checkData(uri, length, path);
-        checkName(uri, path + "/uri");
+        if (const std::string fault = faultOfName(uri); !fault.empty()) fail(path + "/uri", fault);
         sources_.files.push_back({index, length});
     }
 
-    void checkImage(const Json& image, size_t index) const {
-        const std::string path = "/images/" + std::to_string(index);
-        if (image.contains("uri") == image.contains("bufferView"))
-            fail(path, image.contains("uri") ? "has both a uri and a bufferView" : "has no source",
-                 "a uri or a bufferView");
-        if (!image.contains("uri")) return;
-        const auto& uri = image["uri"].get_ref<const std::string&>();
-        if (!isDataUri(uri)) checkName(uri, path + "/uri");
-        else if (tinygltf::IsDataURI(uri) && dataBytes(uri) == 0)
-            fail(path + "/uri", "the data URI holds no bytes", {}, '"' + shortened(uri) + '"');
+    /// What cannot be read is a fault that is shown in the image's stead.
+    void checkImage(Json& image, size_t index) {
+        const bool isNamed = image.contains("uri");
+        if (isNamed && image.contains("bufferView"))
+            fail("/images/" + std::to_string(index), "has both a uri and a bufferView", "a uri or a bufferView");
+        if (!isNamed && image.contains("bufferView")) return;
+        std::string fault = isNamed ? faultOfImage(image["uri"].get_ref<std::string&>())
+                                    : "has no source, neither a uri nor a bufferView";
+        if (fault.empty()) return;
+        image["uri"] = "";
+        sources_.imageFaults.push_back({index, std::move(fault)});
+        sources_.hasChanged = true;
     }
 
     Sources take() { return std::move(sources_); }
 
 private:
-    /// Of the base64 in a data URI, up to the first character that is none.
-    static uint64_t dataBytes(const std::string& uri) {
-        constexpr const char* kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-        const size_t begin = uri.find(',') + 1;
-        return (std::min(uri.find_first_not_of(kAlphabet, begin), uri.size()) - begin) * 3 / 4;
-    }
-
     void checkData(std::string& uri, uint64_t length, const std::string& path) {
-        if (!tinygltf::IsDataURI(uri))
+        if (!isKnownData(uri))
             fail(path + "/uri", "a buffer has an unsupported kind of data URI, \"" + shortened(uri) + '"');
-        const uint64_t bytes = dataBytes(uri);
+        const Base64 data = plainBase64(uri);
+        const uint64_t bytes = data.byteCount();
+        sources_.hasChanged |= data.hasChanged;
+        if (length > bytes && !data.badCharacter.empty())
+            fail(path + "/uri", kBadCharacter, "A to Z, a to z, 0 to 9, + and /", data.badCharacter);
         if (length > bytes) failLength(path, "the data URI \"" + shortened(uri) + '"', bytes, length);
         if (length == bytes) return;
-        uri.resize(uri.find(',') + 1 + static_cast<size_t>(length * 4 + 2) / 3);
-        sources_.hasCut = true;
+        uri.resize(data.begin + static_cast<size_t>(length * 4 + 2) / 3);
+        sources_.hasChanged = true;
     }
 
-    void checkName(const std::string& uri, const std::string& path) const {
-        const std::string name = unescaped(uri);
-        if (name.find("://") != name.npos || !pathInside(folder_, name))
-            fail(path, "the file name \"" + shortened(name) + "\" leads out of the asset's folder");
+    /// Why an image's URI is not read, or empty.
+    std::string faultOfImage(std::string& uri) {
+        if (!isDataUri(uri)) return faultOfName(uri);
+        if (!isKnownData(uri)) return {};
+        const Base64 data = plainBase64(uri);
+        sources_.hasChanged |= data.hasChanged;
+        if (!data.badCharacter.empty()) return std::string(kBadCharacter) + ", " + data.badCharacter;
+        return data.byteCount() > 0 ? std::string() : "the data URI \"" + shortened(uri) + "\" holds no bytes";
     }
+
+    /// Why a file's name is not followed, or empty.
+    std::string faultOfName(const std::string& uri) const {
+        const std::string name = unescaped(uri);
+        if (name.find("://") == name.npos && pathInside(folder_, name)) return {};
+        return "the file name \"" + shortened(name) + "\" leads out of the asset's folder";
+    }
+
+    /// Is it base64 that tinygltf reads? It looks for its beginnings anywhere in what it gets.
+    static bool isKnownData(const std::string& uri) { return tinygltf::IsDataURI(uri.substr(0, 64)); }
 
     [[noreturn]] void failLength(const std::string& path, const std::string& source, uint64_t bytes,
                                  uint64_t length) const {
@@ -110,10 +112,8 @@ Sources checkSources(Json& tree, const std::filesystem::path& folder, uint64_t c
         for (size_t i = 0; tree.contains(section) && i < tree[section].size(); ++i) visit(tree[section][i], i);
     };
     each("buffers", [&](Json& buffer, size_t i) { checker.checkBuffer(buffer, i); });
-    each("images", [&](const Json& image, size_t i) { checker.checkImage(image, i); });
+    each("images", [&](Json& image, size_t i) { checker.checkImage(image, i); });
     return checker.take();
 }
-
-std::string shortened(std::string_view uri) { return std::string(uri.substr(0, 40)) + (uri.size() > 40 ? "..." : ""); }
 
 }  // namespace lumi::gltf

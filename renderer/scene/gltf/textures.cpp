@@ -159,6 +159,7 @@ void TextureLibrary::loadImage(int index, Entry& entry) const {
             file = readFile(source.file, kMaxImageBytes);
             bytes = file;
         }
+        if (!source.fault.empty()) throwBadInput({.what = source.fault});
         if (bytes.empty())
             throwBadInput({.what = source.name.starts_with("data:")
                                        ? "an unsupported kind of data URI, \"" + source.name + '"'
