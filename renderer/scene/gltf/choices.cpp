@@ -8,6 +8,7 @@
 #include "base/files.h"
 #include "scene/gltf/glb.h"
 #include "scene/gltf/json_guard.h"
+#include "scene/gltf/json_walk.h"
 
 namespace lumi::gltf {
 namespace {
@@ -45,8 +46,9 @@ Choices readChoices(const std::filesystem::path& path) {
     Choices choices;
     if (!tree.is_object()) return choices;
     choices.scenes = namesIn(tree, "scenes");
-    if (tree.contains("scene") && tree["scene"].is_number_integer())
-        choices.defaultScene = std::max(tree["scene"].get<int>(), 0);
+    if (tree.contains("scene"))
+        if (const uint64_t scene = wholeNumber(tree["scene"]).value_or(0); scene < choices.scenes.size())
+            choices.defaultScene = static_cast<int>(scene);
     choices.animations = namesIn(tree, "animations");
     for (size_t i = 0; i < choices.animations.size(); ++i)
         if (choices.animations[i].empty()) choices.animations[i] = std::to_string(i);

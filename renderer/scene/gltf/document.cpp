@@ -127,7 +127,6 @@ void Document::parse(std::span<const uint8_t> file) {
     }();
     if (!good) throwBadInput({.what = "damaged glTF: " + firstLine(error), .where = name_});
 
-    checkVersion();
     images_.resize(model_.images.size());
     for (size_t i = 0; i < images_.size(); ++i) {
         const tinygltf::Image& image = model_.images[i];
@@ -145,22 +144,12 @@ std::string Document::checkedJson(std::string_view json, uint64_t chunkBytes) {
     checkRequiredExtensions(summary.requiredExtensions);
     checkMemory("the JSON of " + name_, summary.treeBytes);
     nlohmann::json tree = nlohmann::json::parse(json.begin(), json.end());
-    bool hasChanged = checkStructure(tree, name_);
+    bool hasChanged = checkStructure(tree, warnings_);
     hasChanged |= checkNumbers(tree, warnings_);
     hasChanged |= makeReadable(tree);
     sources_ = checkSources(tree, path_.parent_path(), chunkBytes, name_);
     if (!hasChanged && !sources_.hasChanged) return {};
     return tree.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-/// glTF: any 2.x may be read by who knows 2.0, unless minVersion asks for more.
-void Document::checkVersion() const {
-    const tinygltf::Asset& asset = model_.asset;
-    const auto shown = [](const std::string& text) { return '"' + text.substr(0, 40) + '"'; };
-    if (!asset.version.starts_with("2."))
-        fail("/asset/version", "not a version of glTF that is read", "\"2.0\" or another of 2.x", shown(asset.version));
-    if (!asset.minVersion.empty() && asset.minVersion != "2.0")
-        fail("/asset/minVersion", "the file requires a newer version of glTF", "\"2.0\"", shown(asset.minVersion));
 }
 
 void Document::checkRequiredExtensions(const std::vector<std::string>& names) const {

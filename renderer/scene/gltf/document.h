@@ -68,7 +68,6 @@ private:
     /// Checks the JSON and notes its sources. What tinygltf should read in its place, or empty.
     std::string checkedJson(std::string_view json, uint64_t chunkBytes);
     void decompressViews();
-    void checkVersion() const;
     void checkRequiredExtensions(const std::vector<std::string>& names) const;
     std::filesystem::path resolve(const std::string& tinygltfPath) const;
 

@@ -17,25 +17,13 @@ struct Compressed {
     size_t size() const { return stride * count; }
 };
 
-/// A number that must be there and lie in [least, most].
-size_t numberIn(const Document& document, const tinygltf::Value& extension, const char* key, int64_t least,
-                int64_t most, const std::string& path) {
-    const int64_t value = integerOf(extension, key, -1);
-    if (value < least || value > most)
-        document.fail(path + "/" + key, "is missing or out of range",
-                      std::to_string(least) + " to " + std::to_string(most), std::to_string(value));
-    return static_cast<size_t>(value);
-}
-
 Compressed readExtension(const Document& document, const tinygltf::Value& extension, const std::string& path) {
-    constexpr int64_t kMost = (int64_t(1) << 31) - 1;
+    const auto number = [&](const char* key) { return static_cast<size_t>(integerOf(extension, key, 0)); };
     Compressed view;
-    const int buffer = integerOf(extension, "buffer", -1);
-    const auto offset = static_cast<size_t>(std::max(0, integerOf(extension, "byteOffset", 0)));
-    const size_t length = numberIn(document, extension, "byteLength", 1, kMost, path);
-    view.bytes = document.bufferBytes(buffer, offset, length, path);
-    view.stride = numberIn(document, extension, "byteStride", 1, 256, path);
-    view.count = numberIn(document, extension, "count", 0, kMost, path);
+    view.bytes =
+        document.bufferBytes(integerOf(extension, "buffer", -1), number("byteOffset"), number("byteLength"), path);
+    view.stride = number("byteStride");
+    view.count = number("count");
     view.mode = textOf(extension, "mode");
     view.filter = extension.Has("filter") ? textOf(extension, "filter") : "NONE";
     return view;

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "scene/gltf/json_walk.h"
+#include "scene/gltf/structure_table.h"
 
 namespace lumi::gltf {
 namespace {
@@ -54,48 +56,62 @@ constexpr Range kCore[] = {
     {"extensions/KHR_materials_volume/attenuationDistance", 0, kInfinite, kInfinite},
 };
 
-/// Of KHR_texture_transform, in each of the textures that follow.
+/// Of KHR_texture_transform, in each texture.
 constexpr Range kTransform[] = {
     {"offset", -kHuge, kHuge, 0, 2}, {"scale", -kHuge, kHuge, 1, 2}, {"rotation", -kHuge, kHuge, 0}};
 
-constexpr std::string_view kTextures[] = {
-    "*Texture",
-    "pbrMetallicRoughness/*Texture",
-    "extensions/KHR_materials_anisotropy/*Texture",
-    "extensions/KHR_materials_clearcoat/*Texture",
-    "extensions/KHR_materials_iridescence/*Texture",
-    "extensions/KHR_materials_pbrSpecularGlossiness/*Texture",
-    "extensions/KHR_materials_sheen/*Texture",
-    "extensions/KHR_materials_specular/*Texture",
-    "extensions/KHR_materials_transmission/*Texture",
+/// All of them, and their places in a file.
+struct Ranges {
+    std::vector<const Range*> ranges;
+    JsonPatterns patterns;
+
+    void add(const Range& range, const std::string& place) {
+        patterns.add("materials/[]/" + place + std::string(range.path), ranges.size());
+        ranges.push_back(&range);
+    }
 };
+
+const Ranges& allRanges() {
+    static const Ranges all = [] {
+        Ranges made;
+        for (const Range& range : kCore) made.add(range, "");
+        for (const std::string_view texture : texturePaths())
+            for (const Range& range : kTransform)
+                made.add(range, std::string(texture) + "/extensions/KHR_texture_transform/");
+        return made;
+    }();
+    return all;
+}
 
 class NumberChecker final : JsonWalk {
 public:
     explicit NumberChecker(FileWarnings& warnings) : warnings_(warnings) {}
 
-    void check(Json& material, const std::string& pattern, const Range& range) {
-        range_ = &range;
-        walk(material, "materials/[]/" + pattern);
-    }
+    void check(Json& tree) { walk(tree, allRanges().patterns); }
     bool hasChanged() const { return hasChanged_; }
 
 private:
-    void onOtherType(const Json&, const char*) override {}  // an extension that is no object is left out
+    // An extension that is no object is left out.
+    Seen onOtherType(const Json&, const char*) override { return Seen::Stays; }
 
-    void onValue(Json& value) override {
-        if (range_->size == 1) return checkNumber(value, path());
-        if (!value.is_array() || value.size() != range_->size)
-            return replace(value, path(), fmt::format("not {} numbers", range_->size),
-                           std::vector<double>(range_->size, range_->otherwise));
-        for (size_t i = 0; i < value.size(); ++i) checkNumber(value[i], path() + "/" + std::to_string(i));
+    Seen onValue(size_t number, Json& value) override {
+        range_ = allRanges().ranges[number];
+        if (range_->size == 1) checkNumber(value);
+        else if (!value.is_array() || value.size() != range_->size)
+            replace(value, path(), fmt::format("not {} numbers", range_->size),
+                    std::vector<double>(range_->size, range_->otherwise));
+        else
+            for (size_t i = 0; i < value.size(); ++i) checkNumber(value[i], i);
+        return Seen::Stays;
     }
 
-    void checkNumber(Json& value, const std::string& where) {
-        if (!value.is_number()) return replace(value, where, "not a number", range_->otherwise);
+    /// An entry of an array has its place in it.
+    void checkNumber(Json& value, std::optional<size_t> entry = std::nullopt) {
+        const auto where = [&] { return entry ? path() + "/" + std::to_string(*entry) : path(); };
+        if (!value.is_number()) return replace(value, where(), "not a number", range_->otherwise);
         const double given = value.get<double>();
         if (const double taken = nearest(given); std::abs(taken - given) > 1e-6)
-            replace(value, where, "out of range", taken);
+            replace(value, where(), "out of range", taken);
     }
 
     /// An index of refraction of 0 reflects everything; a distance of 0 is none.
@@ -122,10 +138,7 @@ private:
 
 bool checkNumbers(Json& tree, FileWarnings& warnings) {
     NumberChecker checker(warnings);
-    for (const Range& range : kCore) checker.check(tree, std::string(range.path), range);
-    for (const std::string_view texture : kTextures)
-        for (const Range& range : kTransform)
-            checker.check(tree, fmt::format("{}/extensions/KHR_texture_transform/{}", texture, range.path), range);
+    checker.check(tree);
     return checker.hasChanged();
 }
 

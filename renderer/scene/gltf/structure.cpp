@@ -1,129 +1,17 @@
 #include "scene/gltf/structure.h"
 
-#include <cmath>
-#include <limits>
+#include <algorithm>
+#include <cctype>
 #include <string_view>
 
 #include "base/error.h"
 #include "scene/gltf/json_walk.h"
+#include "scene/gltf/structure_table.h"
 
 namespace lumi::gltf {
 namespace {
 
 using Json = nlohmann::json;
-
-enum class Kind { Object, Text, Word, Whole, Index };
-enum class Need { Optional, Required };
-
-constexpr uint64_t kAny = std::numeric_limits<uint64_t>::max();
-constexpr uint64_t kMostInt = std::numeric_limits<int>::max();  ///< of what tinygltf keeps as an int
-
-/// What stands at a path, which is a pattern of JsonWalk. What is on the way to it is optional, but of the right type.
-struct Rule {
-    std::string_view path;
-    Kind kind;
-    std::string_view of = {};  ///< Word: the words, with '|' between; Index: the section that it counts in
-    Need need = Need::Optional;
-    uint64_t least = 0, most = kAny, step = 1;  ///< Whole
-};
-
-constexpr Rule object(std::string_view path) { return {path, Kind::Object, {}, Need::Required}; }
-constexpr Rule text(std::string_view path, Need need = Need::Optional) { return {path, Kind::Text, {}, need}; }
-constexpr Rule word(std::string_view path, std::string_view words) { return {path, Kind::Word, words, Need::Required}; }
-constexpr Rule whole(std::string_view path, uint64_t least = 0, uint64_t most = kAny, uint64_t step = 1) {
-    return {path, Kind::Whole, {}, Need::Optional, least, most, step};
-}
-constexpr Rule index(std::string_view path, std::string_view section) { return {path, Kind::Index, section}; }
-constexpr Rule required(Rule rule) {
-    rule.need = Need::Required;
-    return rule;
-}
-
-constexpr Rule kRules[] = {
-    object("asset"),
-    text("asset/version", Need::Required),
-
-    object("accessors/[]"),
-    object("animations/[]"),
-    object("bufferViews/[]"),
-    object("buffers/[]"),
-    object("cameras/[]"),
-    object("images/[]"),
-    object("materials/[]"),
-    object("meshes/[]"),
-    object("nodes/[]"),
-    object("samplers/[]"),
-    object("scenes/[]"),
-    object("skins/[]"),
-    object("textures/[]"),
-
-    required(whole("buffers/[]/byteLength", 1)),
-    text("buffers/[]/uri"),
-    required(index("bufferViews/[]/buffer", "buffers")),
-    whole("bufferViews/[]/byteOffset"),
-    required(whole("bufferViews/[]/byteLength")),
-    whole("bufferViews/[]/byteStride", 0, 252, 4),
-    index("bufferViews/[]/extensions/EXT_meshopt_compression/buffer", "buffers"),
-
-    index("accessors/[]/bufferView", "bufferViews"),
-    whole("accessors/[]/byteOffset"),
-    required(whole("accessors/[]/componentType", 5120, 5130)),
-    required(whole("accessors/[]/count")),
-    word("accessors/[]/type", "SCALAR|VEC2|VEC3|VEC4|MAT2|MAT3|MAT4"),
-    required(whole("accessors/[]/sparse/count", 0, kMostInt)),
-    object("accessors/[]/sparse/indices"),
-    required(index("accessors/[]/sparse/indices/bufferView", "bufferViews")),
-    whole("accessors/[]/sparse/indices/byteOffset", 0, kMostInt),
-    required(whole("accessors/[]/sparse/indices/componentType", 0, kMostInt)),
-    object("accessors/[]/sparse/values"),
-    required(index("accessors/[]/sparse/values/bufferView", "bufferViews")),
-    whole("accessors/[]/sparse/values/byteOffset", 0, kMostInt),
-
-    text("images/[]/uri"),
-    index("images/[]/bufferView", "bufferViews"),
-    whole("samplers/[]/magFilter", 0, kMostInt),
-    whole("samplers/[]/minFilter", 0, kMostInt),
-    whole("samplers/[]/wrapS", 0, kMostInt),
-    whole("samplers/[]/wrapT", 0, kMostInt),
-    index("textures/[]/source", "images"),
-    index("textures/[]/sampler", "samplers"),
-    required(index("materials/[]/*Texture/index", "textures")),
-    required(index("materials/[]/pbrMetallicRoughness/*Texture/index", "textures")),
-    required(index("materials/[]/extensions/KHR_materials_anisotropy/*Texture/index", "textures")),
-    required(index("materials/[]/extensions/KHR_materials_clearcoat/*Texture/index", "textures")),
-    required(index("materials/[]/extensions/KHR_materials_iridescence/*Texture/index", "textures")),
-    required(index("materials/[]/extensions/KHR_materials_pbrSpecularGlossiness/*Texture/index", "textures")),
-    required(index("materials/[]/extensions/KHR_materials_sheen/*Texture/index", "textures")),
-    required(index("materials/[]/extensions/KHR_materials_specular/*Texture/index", "textures")),
-    required(index("materials/[]/extensions/KHR_materials_transmission/*Texture/index", "textures")),
-
-    object("meshes/[]/primitives/[]/attributes"),
-    index("meshes/[]/primitives/[]/attributes/{}", "accessors"),
-    index("meshes/[]/primitives/[]/indices", "accessors"),
-    index("meshes/[]/primitives/[]/material", "materials"),
-    whole("meshes/[]/primitives/[]/mode", 0, 6),
-    index("meshes/[]/primitives/[]/targets/[]/{}", "accessors"),
-    index("meshes/[]/primitives/[]/extensions/KHR_draco_mesh_compression/bufferView", "bufferViews"),
-
-    word("cameras/[]/type", "perspective|orthographic"),
-    index("skins/[]/inverseBindMatrices", "accessors"),
-    index("skins/[]/skeleton", "nodes"),
-    index("skins/[]/joints/[]", "nodes"),
-    index("nodes/[]/mesh", "meshes"),
-    index("nodes/[]/skin", "skins"),
-    index("nodes/[]/camera", "cameras"),
-    index("nodes/[]/children/[]", "nodes"),
-    index("nodes/[]/extensions/EXT_mesh_gpu_instancing/attributes/{}", "accessors"),
-    required(whole("nodes/[]/extensions/KHR_lights_punctual/light", 0, kMostInt)),
-    index("scenes/[]/nodes/[]", "nodes"),
-    index("scene", "scenes"),
-
-    required(index("animations/[]/samplers/[]/input", "accessors")),
-    required(index("animations/[]/samplers/[]/output", "accessors")),
-    required(whole("animations/[]/channels/[]/sampler", 0, kMostInt)),
-    object("animations/[]/channels/[]/target"),
-    index("animations/[]/channels/[]/target/node", "nodes"),
-};
 
 /// The words with commas between.
 std::string listed(std::string_view words) {
@@ -134,107 +22,249 @@ std::string listed(std::string_view words) {
     return list;
 }
 
+bool isAmong(std::string_view words, std::string_view wanted) {
+    for (size_t bar = 0; bar != words.npos; words.remove_prefix(bar == words.npos ? 0 : bar + 1)) {
+        bar = words.find('|');
+        if (words.substr(0, bar) == wanted) return true;
+    }
+    return false;
+}
+
+/// The rules and their patterns.
+struct RuleSet {
+    std::vector<Rule> rules;
+    JsonPatterns patterns;
+
+    void add(const Rule& rule, const std::string& place) {
+        patterns.add(place + std::string(rule.path), rules.size());
+        rules.push_back(rule);
+    }
+};
+
+RuleSet setOf(std::span<const Rule> rules) {
+    RuleSet set;
+    for (const Rule& rule : rules) set.add(rule, "");
+    return set;
+}
+
+const RuleSet& assetSet() {
+    static const RuleSet set = setOf(assetRules());
+    return set;
+}
+
+const RuleSet& formSet() {
+    static const RuleSet set = setOf(formRules());
+    return set;
+}
+
+const RuleSet& ruleSet() {
+    static const RuleSet set = [] {
+        RuleSet made = setOf(rules());
+        for (const std::string_view texture : texturePaths())
+            for (const Rule& rule : textureRules()) made.add(rule, "materials/[]/" + std::string(texture));
+        return made;
+    }();
+    return set;
+}
+
 class Checker final : JsonWalk {
 public:
     Checker(Json& tree, const std::string& where) : tree_(tree), where_(where) {}
 
-    void check(const Rule& rule) {
-        rule_ = &rule;
-        count_ = 0;
-        if (rule.kind == Kind::Index && tree_.is_object())
-            if (const auto section = tree_.find(rule.of); section != tree_.end() && section->is_array())
-                count_ = section->size();
-        walk(tree_, rule.path);
+    void check(const RuleSet& set) {
+        set_ = &set;
+        counts_.clear();
+        for (const Rule& rule : set.rules) counts_.push_back(rule.kind == Kind::Index ? entriesOf(rule.of) : 0);
+        walk(tree_, set.patterns);
     }
-    bool hasRewritten() const { return hasRewritten_; }
+
+    /// glTF: any 2.x may be read by who knows 2.0, unless minVersion asks for more.
+    void checkVersion() const {
+        const Json& asset = tree_["asset"];
+        const auto refuse = [&](const std::string& name, const char* what, const char* expected) {
+            const std::string found = asset[name].get<std::string>().substr(0, 40);
+            throwBadInput(
+                {.what = what, .where = where_ + ": /asset/" + name, .expected = expected, .found = '"' + found + '"'});
+        };
+        if (!asset["version"].get_ref<const std::string&>().starts_with("2."))
+            refuse("version", "not a version of glTF that is read", "\"2.0\" or another of 2.x");
+        const auto least = asset.find("minVersion");
+        if (least != asset.end() && least->is_string() && *least != "" && *least != "2.0")
+            refuse("minVersion", "the file requires a newer version of glTF", "\"2.0\"");
+    }
+
+    void warnOfAbsent(FileWarnings& warnings) const {
+        if (absent_ == 0) return;
+        const std::string more = absent_ == 2  ? ", as in 1 more place"
+                                 : absent_ > 2 ? ", as in " + std::to_string(absent_ - 1) + " more places"
+                                               : "";
+        warnings.warn(firstAbsent_ + " is read as absent" + more);
+    }
+    bool hasChanged() const { return hasRewritten_ || absent_ > 0; }
 
 private:
-    void onMissing() override {
-        if (rule_->need == Need::Required) fail("is missing", expected(), {});
+    size_t entriesOf(std::string_view section) const {
+        const Json::json_pointer pointer("/" + std::string(section));
+        return tree_.is_object() && tree_.contains(pointer) && tree_[pointer].is_array() ? tree_[pointer].size() : 0;
     }
-    void onOtherType(const Json& value, const char* expected) override {
+
+    void onMissing(size_t number) override {
+        if (set_->rules[number].need == Need::Required) fail("is missing", expected(number), {});
+    }
+
+    Seen onOtherType(const Json& value, const char* expected) override {
+        // Some write an empty array for an object without members.
+        const bool isExtension = name() == "extensions" || name(1) == "extensions";
+        if (!name().empty() && (value.is_null() || (isExtension && value.is_array() && value.empty())))
+            return absent(value);
         fail("has the wrong type", expected, shown(value));
     }
-    void onValue(Json& value) override {
-        switch (rule_->kind) {
-            case Kind::Object:
-                if (!value.is_object()) fail("has the wrong type", expected(), shown(value));
-                return;
-            case Kind::Text:
-                if (!value.is_string()) fail("has the wrong type", expected(), shown(value));
-                return;
-            case Kind::Word: return checkWord(value);
-            case Kind::Whole: return checkWhole(value);
-            case Kind::Index: return checkIndex(value);
+
+    Seen onValue(size_t number, Json& value) override {
+        const Rule& rule = set_->rules[number];
+        if (isAbsent(rule, value)) return absent(value);
+        switch (rule.kind) {
+            case Kind::Object: expectType(value.is_object(), number, value); break;
+            case Kind::Array: expectType(value.is_array(), number, value); break;
+            case Kind::Text: expectType(value.is_string(), number, value); break;
+            case Kind::Number: expectType(value.is_number(), number, value); break;
+            case Kind::Numbers: checkNumbers(number, value); break;
+            case Kind::Whole: checkWhole(number, value); break;
+            case Kind::Index: checkIndex(number, value); break;
+            case Kind::Typed: checkTyped(rule, value); break;
+            case Kind::Texture: return checkTexture(value);
+            case Kind::Code:
+                makeWhole(value);
+                expectType(value.is_number(), number, value);
+                if (!isAmong(rule.of, shown(value)))
+                    fail("is none of those that there are", expected(number), shown(value));
+                break;
+            case Kind::Word:
+                if (!value.is_string() || !isAmong(rule.of, value.get_ref<const std::string&>()))
+                    fail("is none of those that there are", expected(number), shown(value));
+                break;
+        }
+        return Seen::Stays;
+    }
+
+    bool isAbsent(const Rule& rule, const Json& value) const {
+        if (rule.need == Need::Required || name().empty()) return false;
+        if (value.is_null()) return true;
+        if (rule.kind == Kind::Numbers) return value.is_array() && value.empty();
+        const bool isMinusOne = value.is_number() && value == -1;
+        if (rule.kind != Kind::Index) return isMinusOne && rule.orMinusOne;
+        if (rule.path == "scene" && entriesOf(rule.of) == 0) return wholeNumber(value) == 0;
+        // Members of attributes that glTF does not name may be anything.
+        const bool isForeign = rule.path.ends_with("{}") && std::islower(static_cast<unsigned char>(name().front()));
+        return isMinusOne || (isForeign && !value.is_number());
+    }
+
+    Seen absent(const Json& value, const std::string& inside = {}) {
+        const bool isEmpty = value.is_array() && value.empty();
+        if (absent_++ == 0) firstAbsent_ = path() + inside + ": " + (isEmpty ? "an empty array" : shown(value));
+        return Seen::IsAbsent;
+    }
+
+    void expectType(bool isRight, size_t number, const Json& value) const {
+        if (!isRight) fail("has the wrong type", expected(number), shown(value));
+    }
+
+    void checkNumbers(size_t number, const Json& value) const {
+        expectType(value.is_array(), number, value);
+        for (size_t i = 0; i < value.size(); ++i)
+            if (!value[i].is_number()) fail("has the wrong type", "a number", shown(value[i]), "/" + std::to_string(i));
+        if (const uint64_t count = set_->rules[number].most; value.size() != count)
+            fail("has the wrong length", std::to_string(count), std::to_string(value.size()));
+    }
+
+    void checkWhole(size_t number, Json& value) {
+        const Rule& rule = set_->rules[number];
+        makeWhole(value);
+        const uint64_t given = value.is_number_unsigned() ? value.get<uint64_t>() : 0;
+        expectType(value.is_number(), number, value);
+        if (!value.is_number_unsigned() || given < rule.least || given > rule.most || given % rule.step != 0)
+            fail("is out of range", expected(number), shown(value));
+    }
+
+    void checkIndex(size_t number, Json& value) {
+        makeWhole(value);
+        expectType(value.is_number(), number, value);
+        if (!value.is_number_unsigned() || value.get<uint64_t>() >= counts_[number])
+            fail("no such entry in /" + std::string(set_->rules[number].of), expected(number), shown(value));
+    }
+
+    void checkTyped(const Rule& rule, Json& value) const {
+        const auto& type = value["type"].get_ref<const std::string&>();
+        for (std::string_view words = rule.of; !words.empty();) {
+            const std::string word(words.substr(0, words.find('|')));
+            words.remove_prefix(std::min(word.size() + 1, words.size()));
+            const auto member = value.find(word);
+            if (word != type) value.erase(word);
+            else if (member == value.end()) fail("is missing", "an object", {}, "/" + word);
+            else if (!member->is_object()) fail("has the wrong type", "an object", shown(*member), "/" + word);
         }
     }
 
-    void checkWord(const Json& value) const {
-        std::string_view words = rule_->of;
-        for (size_t bar = 0; value.is_string() && bar != words.npos; words.remove_prefix(bar + 1)) {
-            bar = words.find('|');
-            if (words.substr(0, bar) == value.get_ref<const std::string&>()) return;
-            if (bar == words.npos) break;
-        }
-        fail("is none of those that there are", expected(), shown(value));
+    Seen checkTexture(const Json& value) {
+        if (!value.is_object()) return onOtherType(value, "an object");
+        const auto index = value.find("index");
+        if (index == value.end() || !(index->is_null() || (index->is_number() && *index == -1))) return Seen::Stays;
+        return absent(*index, "/index");
     }
 
-    void checkWhole(Json& value) {
-        makeWhole(value);
-        const uint64_t number = value.is_number_unsigned() ? value.get<uint64_t>() : 0;
-        if (!value.is_number()) fail("has the wrong type", expected(), shown(value));
-        if (!value.is_number_unsigned() || number < rule_->least || number > rule_->most || number % rule_->step != 0)
-            fail("is out of range", expected(), shown(value));
-    }
-
-    void checkIndex(Json& value) {
-        makeWhole(value);
-        if (!value.is_number()) fail("has the wrong type", expected(), shown(value));
-        if (!value.is_number_unsigned() || value.get<uint64_t>() >= count_)
-            fail("no such entry in /" + std::string(rule_->of), expected(), shown(value));
-    }
-
-    /// 4.0 is 4; beyond 2^53, numbers with a fraction have none.
     void makeWhole(Json& value) {
-        if (!value.is_number_float()) return;
-        const double number = value.get<double>();
-        if (!(number >= 0 && number <= 9007199254740992.0) || number != std::floor(number)) return;
-        value = static_cast<uint64_t>(number);
+        if (value.is_number_unsigned()) return;
+        const std::optional<uint64_t> number = wholeNumber(value);
+        if (!number) return;
+        value = *number;
         hasRewritten_ = true;
     }
 
-    std::string expected() const {
-        const Rule& rule = *rule_;
+    std::string expected(size_t number) const {
+        const Rule& rule = set_->rules[number];
         switch (rule.kind) {
-            case Kind::Object: return "an object";
+            case Kind::Object:
+            case Kind::Texture:
+            case Kind::Typed: return "an object";
+            case Kind::Array: return "an array";
             case Kind::Text: return "a string";
+            case Kind::Number: return "a number";
+            case Kind::Numbers: return std::to_string(rule.most) + " numbers";
+            case Kind::Code:
             case Kind::Word: return listed(rule.of);
-            case Kind::Index: return expectedIndex(count_, std::string(rule.of));
+            case Kind::Index: return expectedIndex(counts_[number], std::string(rule.of));
             case Kind::Whole: break;
         }
-        const std::string number = rule.step > 1 ? "a multiple of " + std::to_string(rule.step) : "a whole number";
+        const std::string what = rule.step > 1 ? "a multiple of " + std::to_string(rule.step) : "a whole number";
         if (rule.most < kMostInt)
-            return number + " from " + std::to_string(rule.least) + " to " + std::to_string(rule.most);
-        return number + ", at least " + std::to_string(rule.least);
+            return what + " from " + std::to_string(rule.least) + " to " + std::to_string(rule.most);
+        return what + ", at least " + std::to_string(rule.least);
     }
 
-    [[noreturn]] void fail(const std::string& what, const std::string& expected, const std::string& found) const {
-        throwBadInput({.what = what, .where = where_ + ": " + path(), .expected = expected, .found = found});
+    [[noreturn]] void fail(const std::string& what, const std::string& expected, const std::string& found,
+                           const std::string& inside = {}) const {
+        throwBadInput({.what = what, .where = where_ + ": " + path() + inside, .expected = expected, .found = found});
     }
 
     Json& tree_;
     const std::string& where_;
-    const Rule* rule_ = nullptr;
-    size_t count_ = 0;  ///< Index: of the section's entries
+    const RuleSet* set_ = nullptr;
+    std::vector<size_t> counts_;  ///< Index: of the section's entries, by rule
     bool hasRewritten_ = false;
+    size_t absent_ = 0;  ///< members that are read as absent
+    std::string firstAbsent_;
 };
 
 }  // namespace
 
-bool checkStructure(Json& tree, const std::string& where) {
-    Checker checker(tree, where);
-    for (const Rule& rule : kRules) checker.check(rule);
-    return checker.hasRewritten();
+bool checkStructure(Json& tree, FileWarnings& warnings) {
+    Checker checker(tree, warnings.file());
+    checker.check(assetSet());
+    checker.checkVersion();
+    checker.check(formSet());
+    checker.check(ruleSet());
+    checker.warnOfAbsent(warnings);
+    return checker.hasChanged();
 }
 
 std::string expectedIndex(size_t count, const std::string& collection) {

@@ -22,10 +22,7 @@ std::optional<Transform> decompose(const Mat4& m) {
     return t;
 }
 
-std::vector<float> checkedNumbers(const Document& document, const std::vector<double>& values, size_t count,
-                                  const std::string& path) {
-    if (values.size() != count)
-        document.fail(path, "wrong length", std::to_string(count), std::to_string(values.size()));
+std::vector<float> finiteNumbers(const Document& document, const std::vector<double>& values, const std::string& path) {
     std::vector<float> numbers(values.begin(), values.end());
     for (const float number : numbers)
         if (!std::isfinite(number)) document.fail(path, "a value is not finite");
@@ -48,7 +45,7 @@ Quat unitRotation(const Vec4& xyzw) {
 
 void readTransform(const Document& document, const tinygltf::Node& source, const std::string& path, Node& node) {
     if (!source.matrix.empty()) {
-        const std::vector<float> m = checkedNumbers(document, source.matrix, 16, path + "/matrix");
+        const std::vector<float> m = finiteNumbers(document, source.matrix, path + "/matrix");
         for (size_t i = 0; i < 16; ++i) node.matrix[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = m[i];
         for (int column = 0; column < 4; ++column) node.matrix[column].w = column == 3 ? 1.0f : 0.0f;
         if (const auto transform = decompose(node.matrix)) node.local = *transform;
@@ -56,15 +53,15 @@ void readTransform(const Document& document, const tinygltf::Node& source, const
         return;
     }
     if (!source.translation.empty()) {
-        const std::vector<float> t = checkedNumbers(document, source.translation, 3, path + "/translation");
+        const std::vector<float> t = finiteNumbers(document, source.translation, path + "/translation");
         node.local.translation = {t[0], t[1], t[2]};
     }
     if (!source.rotation.empty()) {
-        const std::vector<float> r = checkedNumbers(document, source.rotation, 4, path + "/rotation");
+        const std::vector<float> r = finiteNumbers(document, source.rotation, path + "/rotation");
         node.local.rotation = unitRotation({r[0], r[1], r[2], r[3]});
     }
     if (!source.scale.empty()) {
-        const std::vector<float> s = checkedNumbers(document, source.scale, 3, path + "/scale");
+        const std::vector<float> s = finiteNumbers(document, source.scale, path + "/scale");
         node.local.scale = {s[0], s[1], s[2]};
     }
 }

@@ -10,7 +10,7 @@ bool isFiniteMatrix(const Mat4& m);
 Quat unitRotation(const Vec4& xyzw);
 
 /// Fills node.local, or node.matrix where a glTF matrix is more than translation, rotation and scale. `path` is the
-/// node's JSON path. Throws Error(BadInput) for wrong lengths and values that are not finite.
+/// node's JSON path. Throws Error(BadInput) for values that are not finite.
 void readTransform(const Document& document, const tinygltf::Node& source, const std::string& path, Node& node);
 
 }  // namespace lumi::gltf

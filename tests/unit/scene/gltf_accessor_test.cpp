@@ -144,7 +144,7 @@ TEST(GltfAccessor, RangesAreChecked) {
     refused([](auto& f) { f.json["accessors"][0]["byteOffset"] = 1; }, {"/accessors/0"});
     refused([](auto& f) { f.json["accessors"][0]["byteOffset"] = 18446744073709551615ull; }, {"/accessors/0"});
     refused([](auto& f) { f.json["accessors"][0]["type"] = "VEC2"; }, {"POSITION", "wrong type", "3 components"});
-    refused([](auto& f) { f.json["accessors"][0]["componentType"] = 5130; }, {"component type"});
+    refused([](auto& f) { f.json["accessors"][0]["componentType"] = 5130; }, {"componentType", "found 5130"});
     refused([](auto& f) { f.json["accessors"][0]["bufferView"] = 7; }, {"/accessors/0/bufferView", "0 to 1", "7"});
     refused([](auto& f) { f.json["bufferViews"][0]["buffer"] = 3; }, {"/bufferViews/0/buffer"});
     refused([](auto& f) { f.json["bufferViews"][0]["byteLength"] = 100000; }, {"/bufferViews/0", "past the end"});

@@ -281,7 +281,7 @@ TEST(GltfFeatures, ChoicesAreReadWithoutTheRest) {
     GltfBuilder file;
     file.triangle();
     file.json["scenes"] = {{{"nodes", {0}}, {"name", "day \u00e4"}}, {{"nodes", {0}}}};
-    file.json["scene"] = 1;
+    file.json["scene"] = 1.0;
     file.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "red"}}, {{"name", "green"}}};
     file.json["nodes"][0]["scenes"] = {{{"name", "none of them"}}};
     test::TemporaryFolder folder;

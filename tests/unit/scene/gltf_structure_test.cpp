@@ -79,7 +79,8 @@ TEST(GltfStructure, IndicesCountInWhatTheyReferTo) {
 }
 
 TEST(GltfStructure, NumbersOfAccessorsAndViews) {
-    expectRefused("/accessors/0/componentType", 999, {"expected a whole number from 5120 to 5130, found 999"});
+    expectRefused("/accessors/0/componentType", 5124, {"expected 5120, 5121, 5122, 5123, 5125, 5126, found 5124"});
+    expectRefused("/accessors/0/componentType", "5126", {"wrong type", "found \"5126\""});
     expectRefused("/accessors/0/type", "VEC9", {"expected SCALAR, VEC2, VEC3, VEC4", "found \"VEC9\""});
     expectRefused("/accessors/0/count", -3, {"expected a whole number, at least 0, found -3"});
     expectRefused("/accessors/0/count", 1.5, {"found 1.5"});
@@ -87,7 +88,8 @@ TEST(GltfStructure, NumbersOfAccessorsAndViews) {
     expectRefused("/bufferViews/0/byteStride", 5, {"expected a multiple of 4 from 0 to 252, found 5"});
     expectRefused("/bufferViews/0/byteStride", 256, {"found 256"});
     expectRefused("/bufferViews/0/byteLength", -1, {"found -1"});
-    expectRefused("/bufferViews/0/byteOffset", nullptr, {"found null"});
+    expectRefused("/bufferViews/0/byteOffset", -1, {"found -1"});
+    expectRefused("/bufferViews/0/byteLength", nullptr, {"found null"});
     expectRefused("/meshes/0/primitives/0/mode", "4", {"wrong type"});
     expectRefused("/cameras/0/type", "fish-eye", {"expected perspective, orthographic"});
     expectRefused("/accessors/0/type", std::string(500, 'x'), {"\"" + std::string(39, 'x') + "..."});
@@ -97,7 +99,9 @@ TEST(GltfStructure, WhatMustBeThereIs) {
     for (const char* path :
          {"/accessors/0/count", "/accessors/0/componentType", "/accessors/0/type", "/bufferViews/0/buffer",
           "/bufferViews/0/byteLength", "/asset/version", "/meshes/0/primitives/0/attributes",
-          "/materials/0/normalTexture/index", "/animations/0/samplers/0/input", "/animations/0/channels/0/sampler"}) {
+          "/materials/0/normalTexture/index", "/animations/0/samplers/0/input", "/animations/0/channels/0/sampler",
+          "/skins/0/joints", "/cameras/0/type", "/cameras/0/perspective", "/cameras/0/perspective/yfov",
+          "/cameras/0/perspective/znear", "/asset"}) {
         SCOPED_TRACE(path);
         GltfBuilder file;
         const json::json_pointer pointer(path);
@@ -129,7 +133,112 @@ TEST(GltfStructure, WholeNumbersMayBeWrittenWithAFraction) {
     file.json["scene"] = 0.0;
     file.json["nodes"][0]["mesh"] = 0.0;
     file.json["accessors"][0]["count"] = 3.0;
+    file.json["accessors"][0]["componentType"] = 5126.0;
     EXPECT_EQ(file.load().triangleCount(), 1);
+}
+
+TEST(GltfStructure, MinusZeroIsZero) {
+    GltfBuilder file;
+    fill(file).json["scene"] = -0.0;
+    file.json["nodes"][0]["mesh"] = -0.0;
+    file.json["bufferViews"][0]["byteOffset"] = -0.0;
+    // Written without a point, the parser takes it for a signed integer.
+    std::vector<uint8_t> glb = file.glb();
+    std::string text(glb.begin(), glb.end());
+    size_t count = 0;
+    for (size_t at = 0; (at = text.find("-0.0", at)) != text.npos; ++count) text.replace(at, 4, "  -0");
+    EXPECT_EQ(count, 3);
+    writeFileAtomically(file.folder() / "a.glb", text);
+    MessageLog log;
+    EXPECT_EQ(loadGltf(file.folder() / "a.glb", log).triangleCount(), 1);
+}
+
+TEST(GltfStructure, SetsOfTextureCoordinatesAreWhole) {
+    const std::string texture = "/materials/0/pbrMetallicRoughness/baseColorTexture";
+    const std::string transform = texture + "/extensions/KHR_texture_transform";
+    for (const std::string& path : {texture + "/texCoord", transform + "/texCoord"}) {
+        GltfBuilder file;
+        fill(file).json[json::json_pointer(path)] = 1.0;
+        EXPECT_EQ(file.load().materials.at(0).baseColorTexture.uvSet, 1) << path;
+        expectRefused(path, 1.5, {"is out of range; expected a whole number, at least 0, found 1.5"});
+    }
+    expectRefused("/materials/0/extensions/KHR_materials_sheen/sheenColorTexture/texCoord", "1", {"wrong type"});
+}
+
+TEST(GltfStructure, VariantsReferToMaterials) {
+    const json variants = {{"variants", {{{"name", "a"}}}}};
+    const std::string mappings = "/meshes/0/primitives/0/extensions/KHR_materials_variants/mappings";
+    GltfBuilder file;
+    fill(file).json["extensions"]["KHR_materials_variants"] = variants;
+    file.json["materials"].push_back({{"name", "other"}});
+    file.json[json::json_pointer(mappings)] = {{{"material", 1.0}, {"variants", {0.0}}}};
+    MessageLog log;
+    LoadOptions options;
+    options.choice.variant = "a";
+    EXPECT_EQ(file.load(log, options).materials.at(1).name, "other");
+    expectRefused(mappings + "/0/material", 0.5, {"no such entry in /materials; expected 0 to 0, found 0.5"});
+    file.json[json::json_pointer(mappings + "/0/variants")] = "a";
+    file.expectRefused({mappings + "/0/variants: has the wrong type; expected an array, found \"a\""});
+}
+
+TEST(GltfStructure, CompressedViewsSayWhatIsWrong) {
+    const std::string path = "/bufferViews/0/extensions/EXT_meshopt_compression";
+    const json good = {{"buffer", 0}, {"byteLength", 9}, {"byteStride", 12}, {"count", 3}, {"mode", "ATTRIBUTES"}};
+    const auto refused = [&](const char* name, const json& value, const std::string& part) {
+        json extension = good;
+        extension[name] = value;
+        GltfBuilder file;
+        fill(file).json[json::json_pointer(path)] = extension;
+        file.expectRefused({path + "/" + name + ": ", part});
+    };
+    refused("byteLength", 1e30, "found 1e+30");
+    refused("byteLength", 0, "found 0");
+    refused("byteStride", 300, "expected a whole number from 1 to 256, found 300");
+    refused("count", "3", "wrong type");
+    refused("byteOffset", -4, "found -4");
+    GltfBuilder file;
+    fill(file).json[json::json_pointer(path)] = {{"buffer", 0}};
+    file.expectRefused({path + "/byteLength: is missing"});
+}
+
+TEST(GltfStructure, CamerasHoldNumbers) {
+    expectRefused("/cameras/0/perspective", nullptr, {"has the wrong type; expected an object, found null"});
+    expectRefused("/cameras/0/perspective/yfov", "wide", {"has the wrong type; expected a number, found \"wide\""});
+    expectRefused("/cameras/0/perspective/zfar", "9", {"expected a number, found \"9\""});
+    GltfBuilder file;
+    fill(file).json["cameras"] = {{{"type", "orthographic"}, {"perspective", {{"yfov", "x"}}}}};
+    file.expectRefused({"/cameras/0/orthographic: is missing; expected an object"});
+    file.json["cameras"][0]["orthographic"] = {{"xmag", 1}, {"ymag", 1}, {"znear", 0}};
+    file.expectRefused({"/cameras/0/orthographic/zfar: is missing; expected a number"});
+    file.json["cameras"][0]["orthographic"]["zfar"] = 5;
+    EXPECT_EQ(file.load().cameras.size(), 1);
+}
+
+TEST(GltfStructure, LightsHaveAType) {
+    const std::string light = "/extensions/KHR_lights_punctual/lights/0";
+    const auto refused = [&](const json& value, const std::string& part) {
+        GltfBuilder file;
+        fill(file).json["extensions"]["KHR_lights_punctual"]["lights"] = json::array({value});
+        file.expectRefused({"test.glb: " + light + part});
+    };
+    refused(nullptr, ": has the wrong type; expected an object, found null");
+    refused({{"intensity", 1}}, "/type: is missing; expected a string");
+    refused({{"type", 3}}, "/type: has the wrong type; expected a string, found 3");
+    refused({{"type", "spot"}}, "/spot: is missing; expected an object");
+}
+
+TEST(GltfStructure, NodesMoveByNumbers) {
+    expectRefused("/nodes/0/translation", "x", {"has the wrong type; expected 3 numbers, found \"x\""});
+    expectRefused("/nodes/0/scale", {1, 1}, {"has the wrong length; expected 3, found 2"});
+    GltfBuilder file;
+    fill(file).json["nodes"][1]["rotation"] = {0, true, 0, 1};
+    file.expectRefused({"/nodes/1/rotation/1: has the wrong type; expected a number, found true"});
+}
+
+TEST(GltfStructure, OldFilesSayTheirVersion) {
+    GltfBuilder file;
+    file.json = {{"asset", {{"version", "1.0"}}}, {"accessors", {{"a", json::object()}}}, {"scene", "s"}};
+    file.expectRefused({"/asset/version: not a version of glTF that is read", "found \"1.0\""});
 }
 
 TEST(GltfStructure, IndicesWithoutBytesAreZeros) {
