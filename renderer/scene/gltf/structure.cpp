@@ -30,6 +30,9 @@ bool isAmong(std::string_view words, std::string_view wanted) {
     return false;
 }
 
+/// The largest unsigned number, which would compare as equal, is none.
+bool isMinusOne(const Json& value) { return value.is_number() && !value.is_number_unsigned() && value == -1; }
+
 /// The rules and their patterns.
 struct RuleSet {
     std::vector<Rule> rules;
@@ -151,12 +154,11 @@ private:
         if (rule.need == Need::Required || name().empty()) return false;
         if (value.is_null()) return true;
         if (rule.kind == Kind::Numbers) return value.is_array() && value.empty();
-        const bool isMinusOne = value.is_number() && value == -1;
-        if (rule.kind != Kind::Index) return isMinusOne && rule.orMinusOne;
+        if (rule.kind != Kind::Index) return rule.orMinusOne && isMinusOne(value);
         if (rule.path == "scene" && entriesOf(rule.of) == 0) return wholeNumber(value) == 0;
-        // Members of attributes that glTF does not name may be anything.
-        const bool isForeign = rule.path.ends_with("{}") && std::islower(static_cast<unsigned char>(name().front()));
-        return isMinusOne || (isForeign && !value.is_number());
+        // Members of attributes whose names are not glTF's may be anything.
+        const bool isForeign = rule.path.ends_with("{}") && !std::isupper(static_cast<unsigned char>(name().front()));
+        return isMinusOne(value) || (isForeign && !value.is_number());
     }
 
     Seen absent(const Json& value, const std::string& inside = {}) {
@@ -208,7 +210,7 @@ private:
     Seen checkTexture(const Json& value) {
         if (!value.is_object()) return onOtherType(value, "an object");
         const auto index = value.find("index");
-        if (index == value.end() || !(index->is_null() || (index->is_number() && *index == -1))) return Seen::Stays;
+        if (index == value.end() || !(index->is_null() || isMinusOne(*index))) return Seen::Stays;
         return absent(*index, "/index");
     }
 

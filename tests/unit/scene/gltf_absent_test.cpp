@@ -99,6 +99,7 @@ TEST(GltfAbsent, OneWarningForAll) {
 
 TEST(GltfAbsent, NamesBesideAttributes) {
     expectAbsent("/meshes/0/primitives/0/attributes/extras", json::object(), "an object");
+    expectAbsent("/meshes/0/primitives/0/attributes/_OWN", "x");
     GltfBuilder file;
     fill(file);
     const json position = file.primitive()["attributes"]["POSITION"];

@@ -69,6 +69,7 @@ TEST(GltfStructure, IndicesCountInWhatTheyReferTo) {
                              "/animations/0/channels/0/target/node"}) {
         expectRefused(path, 99, {"no such entry in /", "expected 0 to ", "found 99"});
         expectRefused(path, -5, {"no such entry in /", "found -5"});
+        expectRefused(path, ~uint64_t(0), {"no such entry in /", "found 18446744073709551615"});
         expectRefused(path, 0.5, {"no such entry in /", "found 0.5"});
         expectRefused(path, "4", {"has the wrong type", "found \"4\""});
         expectRefused(path, json::object(), {"has the wrong type", "found an object"});
