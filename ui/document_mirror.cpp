@@ -8,11 +8,17 @@ namespace lumi {
 void DocumentMirror::Table::fill(std::vector<ParameterInfo> parameters) {
     parameters_ = std::move(parameters);
     byId_.clear();
-    for (const ParameterInfo& info : parameters_) byId_.push_back(&info);
+    for (ParameterInfo& info : parameters_) byId_.push_back(&info);
     std::sort(byId_.begin(), byId_.end(), [](const ParameterInfo* a, const ParameterInfo* b) { return a->id < b->id; });
 }
 
-std::vector<const ParameterInfo*>::const_iterator DocumentMirror::Table::lowest(const std::string& id) const {
+void DocumentMirror::Table::update(std::vector<ParameterInfo> parameters) {
+    for (ParameterInfo& info : parameters)
+        if (const auto place = lowest(info.id); place != byId_.end() && (*place)->id == info.id)
+            **place = std::move(info);
+}
+
+std::vector<ParameterInfo*>::const_iterator DocumentMirror::Table::lowest(const std::string& id) const {
     return std::lower_bound(byId_.begin(), byId_.end(), id,
                             [](const ParameterInfo* info, const std::string& wanted) { return info->id < wanted; });
 }
@@ -44,22 +50,29 @@ bool DocumentMirror::refresh(const Session& session) {
     document_.emplace(session.document());
     camera_ = document_->camera();
     others_.fill(document_->list("", Document::Part::Others));
-    if (scene_ != document_->scene()) {
-        scene_ = document_->scene();
+    if (loaded_ != document_->loadedScene()) {
+        loaded_ = document_->loadedScene();
         ofScene_.fill(document_->list("", Document::Part::OfScene));
-        names_.clear();
-        for (const ParameterInfo& info : ofScene_.all()) {
-            const size_t begin = info.id.find('.') + 1, end = info.id.rfind('.');
-            if (end < begin) continue;
-            std::vector<std::string>& names = names_[info.id.substr(0, begin - 1)];
-            std::string name = info.id.substr(begin, end - begin);
-            if (names.empty() || names.back() != name) names.push_back(std::move(name));
-        }
+        nameThings();
+    } else if (scene_ != document_->scene()) {
+        ofScene_.update(document_->listUnlike(*scene_));
     }
+    scene_ = document_->scene();
     changed_.clear();
     const nlohmann::json changes = document_->changedValues();
     for (const auto& [id, value] : changes.items()) changed_.insert(id);
     return true;
+}
+
+void DocumentMirror::nameThings() {
+    names_.clear();
+    for (const ParameterInfo& info : ofScene_.all()) {
+        const size_t begin = info.id.find('.') + 1, end = info.id.rfind('.');
+        if (end < begin) continue;
+        std::vector<std::string>& names = names_[info.id.substr(0, begin - 1)];
+        std::string name = info.id.substr(begin, end - begin);
+        if (names.empty() || names.back() != name) names.push_back(std::move(name));
+    }
 }
 
 std::vector<const ParameterInfo*> DocumentMirror::group(const std::string& prefix) const {

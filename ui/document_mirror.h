@@ -37,6 +37,8 @@ private:
     class Table {
     public:
         void fill(std::vector<ParameterInfo> parameters);
+        /// Puts values in the place of those of the same ids.
+        void update(std::vector<ParameterInfo> parameters);
         std::vector<const ParameterInfo*> group(const std::string& prefix) const;
         bool hasGroup(const std::string& prefix) const;
         const ParameterInfo* find(const std::string& id) const;
@@ -44,13 +46,15 @@ private:
 
     private:
         /// The first place in byId_ whose id is not less.
-        std::vector<const ParameterInfo*>::const_iterator lowest(const std::string& id) const;
+        std::vector<ParameterInfo*>::const_iterator lowest(const std::string& id) const;
         std::vector<ParameterInfo> parameters_;
-        std::vector<const ParameterInfo*> byId_;  ///< sorted
+        std::vector<ParameterInfo*> byId_;  ///< sorted
     };
 
+    void nameThings();
+
     std::optional<Document> document_;
-    std::shared_ptr<const Scene> scene_;
+    std::shared_ptr<const Scene> loaded_, scene_;
     Camera camera_;
     Table ofScene_, others_;  ///< scenes may have very many parameters, and few change from frame to frame
     std::map<std::string, std::vector<std::string>> names_;

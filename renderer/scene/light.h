@@ -37,6 +37,7 @@ struct Light {
     /// power (a factor on the emission) and what the type has: size, radius, angle-deg, cone angles, colour.
     void describe(ParameterVisitor&);
     float power = 1;  ///< user's factor on intensity, irradiance or radiance
+    bool operator==(const Light&) const = default;
 };
 
 /// Light from infinitely far: an equirectangular image (image centre is -Z, top +Y), or a constant.

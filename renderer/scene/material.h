@@ -74,6 +74,7 @@ struct Material {
     bool hasAlpha() const { return alphaMode != AlphaMode::Opaque; }
     /// Everything a user can move: base-color, metallic, roughness, emission, ior, ...
     void describe(ParameterVisitor&);
+    bool operator==(const Material&) const = default;
 
 private:
     void describeTransmission(ParameterVisitor&);

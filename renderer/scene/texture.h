@@ -37,6 +37,7 @@ struct Texture {
     float rotation = 0;  ///< radians, counter-clockwise in texture space as KHR_texture_transform defines it
 
     explicit operator bool() const { return image != nullptr; }
+    bool operator==(const Texture&) const = default;
     /// Texture-space coordinates (v down) of the mesh's uv.
     Vec2 transformed(Vec2 uv) const;
     /// Linear RGBA at mesh coordinates `uv`. `width` is the lookup's footprint in units of uv (0: level 0, bilinear);

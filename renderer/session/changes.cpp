@@ -55,8 +55,13 @@ bool isCut(const FrameState& before, const FrameState& now) {
 Redo worstDifference(const Document& before, const Document& now) {
     const nlohmann::json changes = Document::difference(before, now);
     Redo worst = Redo::Display;
-    for (const ParameterInfo& info : now.list())
-        if (changes.contains(info.id)) worst = std::max(worst, info.redo);
+    const auto consider = [&](const std::vector<ParameterInfo>& parameters) {
+        for (const ParameterInfo& info : parameters)
+            if (changes.contains(info.id)) worst = std::max(worst, info.redo);
+    };
+    consider(now.list("", Document::Part::Others));
+    consider(now.loadedScene() == before.loadedScene() ? now.listUnlike(*before.scene())
+                                                       : now.list("", Document::Part::OfScene));
     return worst;
 }
 

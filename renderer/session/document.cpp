@@ -275,6 +275,13 @@ std::vector<ParameterInfo> Document::list(const std::string& filter, Part part) 
     return all;
 }
 
+std::vector<ParameterInfo> Document::listUnlike(const Scene& other) const {
+    std::vector<ParameterInfo> all;
+    for (const DocumentFields::Group& group : DocumentFields::groups(*this, "", Part::OfScene, &other))
+        for (ParameterInfo& info : listParameters(group.describe)) all.push_back(std::move(info));
+    return all;
+}
+
 json Document::changedValues() const { return initial_ ? difference(*initial_, *this) : json::object(); }
 
 json Document::difference(const Document& from, const Document& to) {
@@ -298,14 +305,17 @@ json Document::difference(const Document& from, const Document& to) {
     const auto isTold = [](const DocumentFields::Group& group) {
         return group.prefix != "camera." && group.prefix != "time";
     };
+    const bool isSameScene = from.loaded_ == to.loaded_;
     std::map<std::string, ParameterValue> before;
     std::set<std::string> known;
-    for (const DocumentFields::Group& group : DocumentFields::groups(from, "", part)) {
+    for (const DocumentFields::Group& group :
+         DocumentFields::groups(from, "", part, isSameScene ? to.edited_.get() : nullptr)) {
         if (!isTold(group)) continue;
         known.insert(group.prefix);
         for (const ParameterInfo& info : listParameters(group.describe)) before[info.id] = info.value;
     }
-    for (const DocumentFields::Group& group : DocumentFields::groups(to, "", part)) {
+    for (const DocumentFields::Group& group :
+         DocumentFields::groups(to, "", part, isSameScene ? from.edited_.get() : nullptr)) {
         if (!isTold(group)) continue;
         // A module that only `to` shows: `from` knows its values if it is asked for them.
         if (!known.contains(group.prefix))

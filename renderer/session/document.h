@@ -88,6 +88,8 @@ public:
     enum class Part { All, OfScene, Others };
     /// Every id with its declaration and present value. `group` filters by prefix ("path.", "svgf@b.").
     std::vector<ParameterInfo> list(const std::string& group = "", Part part = Part::All) const;
+    /// Those of the sky, and of materials and lights that are not as in `other`, an edit of the same loaded scene.
+    std::vector<ParameterInfo> listUnlike(const Scene& other) const;
     /// Values that differ from the scene's own defaults, as {"id": value}; applying them to a fresh Document of the
     /// same scene gives this one.
     nlohmann::json changedValues() const;

@@ -39,7 +39,7 @@ void checkBuffer(const std::string& instance, const std::string& buffer, const s
 }
 
 std::vector<DocumentFields::Group> DocumentFields::groups(const Document& document, const std::string& filter,
-                                                          Document::Part part) {
+                                                          Document::Part part, const Scene* unlike) {
     using Part = Document::Part;
     std::vector<Group> groups;
     if (part != Part::OfScene) {
@@ -47,7 +47,7 @@ std::vector<DocumentFields::Group> DocumentFields::groups(const Document& docume
         addCamera(document, filter, groups);
         addChoice(document, filter, groups);
     }
-    if (part != Part::Others) addScene(document, filter, groups);
+    if (part != Part::Others) addScene(document, filter, unlike, groups);
     if (part != Part::OfScene) {
         addViews(document, filter, groups);
         addInstances(document, filter, groups);
@@ -170,7 +170,8 @@ void DocumentFields::addChoice(const Document& document, const std::string& filt
                       [copy](Document& d, const auto&, const auto&, const auto&) { d.sceneChoice_ = *copy; }});
 }
 
-void DocumentFields::addScene(const Document& document, const std::string& filter, std::vector<Group>& groups) {
+void DocumentFields::addScene(const Document& document, const std::string& filter, const Scene* unlike,
+                              std::vector<Group>& groups) {
     if (concerns("environment.", filter)) {
         auto copy = std::make_shared<Environment>(document.edited_->environment);
         groups.push_back({"environment.",
@@ -193,6 +194,7 @@ void DocumentFields::addScene(const Document& document, const std::string& filte
     for (size_t i = 0; i < document.names_->materials.size(); ++i) {
         const std::string prefix = "material." + document.names_->materials[i] + ".";
         if (!concerns(prefix, filter) || document.names_->materials[i].empty()) continue;
+        if (unlike && document.edited_->materials[i] == unlike->materials[i]) continue;
         auto copy = std::make_shared<Material>(document.edited_->materials[i]);
         groups.push_back(
             {prefix,
@@ -205,6 +207,7 @@ void DocumentFields::addScene(const Document& document, const std::string& filte
     for (size_t i = 0; i < document.names_->lights.size(); ++i) {
         const std::string prefix = "light." + document.names_->lights[i] + ".";
         if (!concerns(prefix, filter)) continue;
+        if (unlike && document.edited_->lights[i] == unlike->lights[i]) continue;
         auto copy = std::make_shared<Light>(document.edited_->lights[i]);
         groups.push_back(
             {prefix,

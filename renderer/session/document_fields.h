@@ -19,16 +19,17 @@ public:
             commit;
     };
 
-    /// Groups that hold ids beginning with `filter`, or that the id `filter` belongs to.
+    /// Groups that hold ids beginning with `filter`, or that the id `filter` belongs to; without those of materials and
+    /// lights that are as in `unlike`, an edit of the same loaded scene.
     static std::vector<Group> groups(const Document& document, const std::string& filter,
-                                     Document::Part part = Document::Part::All);
+                                     Document::Part part = Document::Part::All, const Scene* unlike = nullptr);
 
 private:
     friend class Document;
     static void addSettings(const Document&, const std::string& filter, std::vector<Group>&);
     static void addCamera(const Document&, const std::string& filter, std::vector<Group>&);
     static void addChoice(const Document&, const std::string& filter, std::vector<Group>&);
-    static void addScene(const Document&, const std::string& filter, std::vector<Group>&);
+    static void addScene(const Document&, const std::string& filter, const Scene* unlike, std::vector<Group>&);
     static void addViews(const Document&, const std::string& filter, std::vector<Group>&);
     static void addInstances(const Document&, const std::string& filter, std::vector<Group>&);
     static Scene& edit(Document&);
