@@ -57,7 +57,9 @@ uint64_t binaryChunkBytes(std::span<const uint8_t> file) {
 std::vector<uint8_t> withJsonChunk(std::span<const uint8_t> file, std::string json) {
     json.resize((json.size() + 3) / 4 * 4, ' ');
     std::span<const uint8_t> rest;
-    if (!hasOtherChunk(file)) rest = file.subspan(kHeader + word(file, 12));
+    const std::span<const uint8_t> declared = file.first(word(file, 8));
+    const size_t jsonEnd = kHeader + size_t(word(file, 12));
+    if (!hasOtherChunk(file) && jsonEnd < declared.size()) rest = declared.subspan(jsonEnd);
     std::vector<uint8_t> out(kHeader + json.size() + rest.size());
     std::memcpy(out.data(), file.data(), kHeader);
     std::memcpy(out.data() + kHeader, json.data(), json.size());

@@ -40,11 +40,16 @@ public:
     /// What cannot be read is a fault that is shown in the image's stead.
     void checkImage(Json& image, size_t index) {
         const bool isNamed = image.contains("uri");
-        if (isNamed && image.contains("bufferView"))
-            fail("/images/" + std::to_string(index), "has both a uri and a bufferView", "a uri or a bufferView");
-        if (!isNamed && image.contains("bufferView")) return;
-        std::string fault = isNamed ? faultOfImage(image["uri"].get_ref<std::string&>())
-                                    : "has no source, neither a uri nor a bufferView";
+        const bool isEmpty = isNamed && image["uri"].get_ref<const std::string&>().empty();
+        if (image.contains("bufferView")) {
+            if (isNamed && !isEmpty)
+                fail("/images/" + std::to_string(index), "has both a uri and a bufferView", "a uri or a bufferView");
+            sources_.hasChanged |= image.erase("uri") > 0;
+            return;
+        }
+        std::string fault = !isNamed  ? "has no source, neither a uri nor a bufferView"
+                            : isEmpty ? "has no source, its uri is empty"
+                                      : faultOfImage(image["uri"].get_ref<std::string&>());
         if (fault.empty()) return;
         image["uri"] = "";
         sources_.imageFaults.push_back({index, std::move(fault)});

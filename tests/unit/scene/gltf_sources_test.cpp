@@ -49,7 +49,8 @@ struct Chunk {
     std::string bytes;
 };
 
-Scene loadChunks(const std::vector<Chunk>& chunks) {
+/// Of a GLB of these chunks, with `behind` after the length that it gives.
+Scene loadChunks(const std::vector<Chunk>& chunks, const std::string& behind = {}) {
     std::string glb = "glTF";
     const auto add = [&](size_t value) {
         for (int i = 0; i < 4; ++i) glb += static_cast<char>(value >> (8 * i));
@@ -58,6 +59,7 @@ Scene loadChunks(const std::vector<Chunk>& chunks) {
     for (const Chunk& chunk : chunks) size += 8 + chunk.bytes.size();
     add(2), add(size);
     for (const Chunk& chunk : chunks) add(chunk.bytes.size()), add(chunk.type), glb += chunk.bytes;
+    glb += behind;
     const test::TemporaryFolder folder;
     writeFileAtomically(folder / "a.glb", glb);
     MessageLog log;
@@ -85,6 +87,16 @@ TEST(GltfSources, EmptyAndUnknownChunksArePassedOver) {
                           {"a.glb: /buffers/0/uri: is missing, and the file has no binary chunk"});
     file["buffers"][0]["byteLength"] = 40;
     test::expectError(ErrorKind::BadInput, [&] { loadChunks({jsonOf(file), bytes}); }, {"/buffers/0/byteLength"});
+}
+
+TEST(GltfSources, BytesBehindTheFileAreNotRead) {
+    json file = triangle();
+    for (const std::string& behind : {std::string("x"), std::string(3, '\0'), std::string("any\0 text", 9)}) {
+        EXPECT_EQ(loadChunks({jsonOf(file)}, behind).triangleCount(), 1);
+        file["accessors"][0]["count"] = 3.0;  // the file is written anew
+        EXPECT_EQ(loadChunks({jsonOf(file)}, behind).triangleCount(), 1);
+        EXPECT_EQ(loadChunks({jsonOf(file), {kBinary, "four"}}, behind).triangleCount(), 1);
+    }
 }
 
 TEST(GltfSources, DataMayBeEscapedAndBroken) {
@@ -127,6 +139,18 @@ TEST(GltfSources, OtherCharactersInDataAreNamed) {
     EXPECT_NE(log.warnings()[0].find("\"_\" as its character"), std::string::npos);
 }
 
+TEST(GltfSources, AnEmptyUriIsNone) {
+    json file = textured({{"uri", ""}, {"bufferView", 1}, {"mimeType", "image/png"}});
+    file["buffers"].push_back({{"uri", "data:image/png;base64," + kPng}, {"byteLength", 70}});
+    file["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 70}});
+    MessageLog log;
+    const Scene scene = load(file, log);
+    EXPECT_TRUE(log.warnings().empty()) << log.warnings().front();
+    EXPECT_EQ(scene.materials.at(0).emissionTexture.image->levels.at(0).extent.width, 1);
+    file["images"][0]["uri"] = "a.png";
+    test::expectError(ErrorKind::BadInput, [&] { load(file, log); }, {"/images/0: has both a uri and a bufferView"});
+}
+
 TEST(GltfSources, ImagesThatAreNotReadHaveAStandIn) {
     const test::TemporaryFolder folder;
     std::filesystem::create_directory(folder / "model");
@@ -137,6 +161,7 @@ TEST(GltfSources, ImagesThatAreNotReadHaveAStandIn) {
           {{{"uri", "https://example.org/a.png"}}, "\"https://example.org/a.png\" leads out"},
           {{{"uri", "/etc/a.png"}}, "\"/etc/a.png\" leads out"},
           {{{"uri", "data:image/png;base64,"}}, "holds no bytes"},
+          {{{"uri", ""}}, "has no source, its uri is empty"},
           {{{"name", "it"}}, "has no source"},
           {json::object(), "has no source"}}) {
         writeFileAtomically(folder / "model/a.gltf", textured(image).dump());
