@@ -158,7 +158,11 @@ private:
         if (rule.path == "scene" && entriesOf(rule.of) == 0) return wholeNumber(value) == 0;
         // Members of attributes whose names are not glTF's may be anything.
         const bool isForeign = rule.path.ends_with("{}") && !std::isupper(static_cast<unsigned char>(name().front()));
-        return isMinusOne(value) || (isForeign && !value.is_number());
+        const auto isEntry = [&] {
+            const std::optional<uint64_t> number = wholeNumber(value);
+            return number && *number < entriesOf(rule.of);
+        };
+        return isMinusOne(value) || (isForeign && !isEntry());
     }
 
     Seen absent(const Json& value, const std::string& inside = {}) {

@@ -115,7 +115,7 @@ constexpr Rule kRules[] = {
     numbers("nodes/[]/rotation", 4),
     numbers("nodes/[]/scale", 3),
     numbers("nodes/[]/matrix", 16),
-    required(index("nodes/[]/extensions/EXT_mesh_gpu_instancing/attributes/{}", "accessors")),
+    index("nodes/[]/extensions/EXT_mesh_gpu_instancing/attributes/{}", "accessors"),
     required(whole("nodes/[]/extensions/KHR_lights_punctual/light", 0, kMostInt)),
     required(index("scenes/[]/nodes/[]", "nodes")),
     index("scene", "scenes"),

@@ -99,7 +99,8 @@ TEST(GltfAbsent, OneWarningForAll) {
 
 TEST(GltfAbsent, NamesBesideAttributes) {
     expectAbsent("/meshes/0/primitives/0/attributes/extras", json::object(), "an object");
-    expectAbsent("/meshes/0/primitives/0/attributes/_OWN", "x");
+    for (const json& value : {json("x"), json(99), json(-7), json(0.5), json()})
+        expectAbsent("/meshes/0/primitives/0/attributes/_OWN", value);
     GltfBuilder file;
     fill(file);
     const json position = file.primitive()["attributes"]["POSITION"];

@@ -56,8 +56,14 @@ TEST(GltfInstancing, InstancesAreAsManyAsAnyAttributeHas) {
     EXPECT_EQ(file.load().instances.size(), 3u);
     attributes["TRANSLATION"] = places;
     file.expectRefused({"/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/_ID", "another count", "3", "2"});
-    attributes = {{"_ID", 99}};
-    file.expectRefused({"/attributes/_ID", "no such entry in /accessors", "99"});
+    attributes = {{"TRANSLATION", 99}};
+    file.expectRefused({"/attributes/TRANSLATION", "no such entry in /accessors", "99"});
+    for (const nlohmann::json& id : {nlohmann::json(99), nlohmann::json(), nlohmann::json("x")}) {
+        attributes = {{"TRANSLATION", places}, {"_ID", id}};
+        MessageLog log;
+        EXPECT_EQ(file.load(log).instances.size(), 2u) << id;
+        EXPECT_EQ(log.warnings().size(), 1u);
+    }
     attributes = nlohmann::json::object();
     file.expectRefused({"/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes", "names no accessor"});
 }

@@ -74,7 +74,7 @@ TEST(GltfStructure, IndicesCountInWhatTheyReferTo) {
         expectRefused(path, "4", {"has the wrong type", "found \"4\""});
         expectRefused(path, json::object(), {"has the wrong type", "found an object"});
     }
-    expectRefused("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/SCALE", -1, {"/accessors", "found -1"});
+    expectRefused("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/SCALE", 99, {"/accessors", "found 99"});
     expectRefused("/bufferViews/0/extensions/EXT_meshopt_compression/buffer", 7, {"/buffers", "found 7"});
     expectRefused("/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/bufferView", "0", {"wrong type"});
 }
