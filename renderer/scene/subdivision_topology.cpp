@@ -20,7 +20,7 @@ void checkIndices(const std::vector<uint32_t>& indices, size_t limit, const char
     for (const uint32_t index : indices)
         if (index >= limit)
             throwBadInput({fmt::format("a {} index is out of range", what), where, fmt::format("below {}", limit),
-                           fmt::format("{}", index)});
+                           fmt::format("{}", static_cast<int32_t>(index))});
 }
 
 void checkCage(const SubdivisionCage& cage, const std::string& where) {

@@ -133,7 +133,10 @@ void warnOfCreasesOffEdges(const SubdivisionCage& cage, FileWarnings& warnings) 
     for (size_t face = 0, first = 0; face < cage.faceSizes.size(); first += cage.faceSizes[face++])
         for (uint32_t i = 0, size = cage.faceSizes[face]; i < size; ++i)
             edges.insert(edge(cage.faceVertices[first + i], cage.faceVertices[first + (i + 1) % size]));
-    const auto isOff = [&](const auto& crease) { return !edges.contains(edge(crease.a, crease.b)); };
+    // Those beyond the vertices are refused later.
+    const auto isOff = [&](const auto& crease) {
+        return std::max(crease.a, crease.b) < cage.positions.size() && !edges.contains(edge(crease.a, crease.b));
+    };
     const auto first = std::ranges::find_if(cage.creases, isOff);
     if (first == cage.creases.end()) return;
     const auto count = std::ranges::count_if(cage.creases, isOff);

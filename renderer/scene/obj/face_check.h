@@ -10,7 +10,7 @@
 namespace lumi {
 
 /// Follows an OBJ's lines: do the corners of its faces, "v/vt/vn" each, refer to what there is? Numbers from 1 may
-/// refer to later lines, those below 0 count back from their own. The text given must stay until finish().
+/// refer to later lines, those below 0 count back from their own.
 class FaceCheck {
 public:
     explicit FaceCheck(FileWarnings& warnings) : warnings_(warnings) {}
@@ -32,7 +32,7 @@ private:
         const char* name;
         int64_t count = 0;
         int64_t largest = 0;  ///< that a face refers to
-        std::string_view wordOfLargest = {};
+        std::string wordOfLargest = {};
         size_t lineOfLargest = 0;
         size_t leftOutLines = 0, firstLeftOut = 0, lastLeftOut = 0;
     };

@@ -102,6 +102,7 @@ void checkObjNumbers(std::string& text, FileWarnings& warnings) {
                                .expected = reachText(),
                                .found = std::string(far)});
         } else {
+            if (line.empty()) continue;  // tinyobj looks for a space behind the word
             faces.addElement(kind == "vt" ? 1 : 2);
             if (faultOf(line, kind == "vt" ? 1 : 3).empty()) continue;
             if (faults++ == 0) first = lineNumber;

@@ -53,6 +53,22 @@ TEST(ObjFaces, NamesMayHoldWhatBeginsComments) {
     EXPECT_EQ(scene.materials[scene.instances[0].mesh->material].baseColor, Vec3(1, 0, 0));
 }
 
+TEST(ObjFaces, WordsAreNamedAsTheyWereWritten) {
+    expectRefused("f 0x1/0/123456 2 3\n", {"a.obj:4: ", "without a vertex"});
+    expectRefused("f 1//7 2/0/123456 3//7\n", {"a.obj:4: ", "a normal", "found 123456"});
+    expectRefused("f 1/-9/123456 2 3\n", {"a.obj:4: ", "a normal", "found 123456"});
+}
+
+TEST(ObjFaces, LinesWithoutNumbersAreNoCoordinates) {
+    MessageLog log;
+    EXPECT_EQ(loadText(kThree + "vt\nvn\nvt 1 1\nvn 0 0 1\nf -3/-2/-2 -2/-1/-1 -1/-1/-1\n", log).triangleCount(), 1);
+    ASSERT_EQ(log.warnings().size(), 2u);
+    EXPECT_NE(log.warnings()[0].find("a.obj:8: a face refers to a texture coordinate that does not"),
+              std::string::npos);
+    EXPECT_NE(log.warnings()[1].find("a.obj:8: a face refers to a normal that does not"), std::string::npos);
+    expectRefused("vt\nvt 1 1\nf 1/2 2/2 3/2\n", {"a.obj:6: ", "expected 1 to 1, found 2"});
+}
+
 TEST(ObjFaces, NumbersMayHaveAPlus) {
     EXPECT_EQ(loadFaces("vt 0 0\nvn 0 0 1\nf +1/+1/+1 +2/+1/+1 +3/+1/+1\n").triangleCount(), 1);
     expectRefused("f 1 2 +-1\n", {"a.obj:4: ", "without a vertex", "found +-1"});

