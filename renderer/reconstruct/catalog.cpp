@@ -15,6 +15,7 @@
 #include "reconstruct/svgf/svgf.h"
 #include "reconstruct/taa/taa.h"
 #include "reconstruct/temporal/temporal.h"
+#include "trace/tracer.h"
 
 namespace lumi {
 namespace {
@@ -22,6 +23,14 @@ namespace {
 template <class T>
 std::unique_ptr<Module> make() {
     return std::make_unique<T>();
+}
+
+/// Of methods whose samples have one place on the screen.
+std::string pinholeAdvice(const Module&, const FrameSampling& sampling) {
+    const bool lens = sampling.camera.aperture > 0, shutter = sampling.shutterOpen;
+    if (!lens && !shutter) return "";
+    return std::string("does without ") + (lens ? "camera.aperture" : "") + (lens && shutter ? " and " : "") +
+           (shutter ? "camera.shutter" : "") + ": it sees through a pinhole, at the instant when the shutter opens";
 }
 
 std::vector<ModuleEntry>& catalog() {
@@ -34,9 +43,12 @@ std::vector<ModuleEntry>& catalog() {
         {"sbf", "SURE-based cross-bilateral bank", "Li12", make<SbfModule>},
         {"aaf", "Axis-aligned filtering of soft shadows", "Mehta12", make<AafModule>},
         {"stable", "Interactive stable ray tracing", "DalCorso17", make<StableModule>,
-         [](const Module& module) { return static_cast<const StableModule&>(module).advice(); }},
-        {"supersampling", "Supersampling", "DalCorso17", make<SupersamplingModule>},
-        {"martin2002", "Temporally coherent ray tracing", "Martin02", make<Martin2002Module>},
+         [](const Module& module, const FrameSampling& sampling) {
+             const std::string own = static_cast<const StableModule&>(module).advice();
+             return own.empty() ? pinholeAdvice(module, sampling) : own;
+         }},
+        {"supersampling", "Supersampling", "DalCorso17", make<SupersamplingModule>, pinholeAdvice},
+        {"martin2002", "Temporally coherent ray tracing", "Martin02", make<Martin2002Module>, pinholeAdvice},
         {"temporal", "Temporal accumulation", "Schied17", make<TemporalModule>},
         {"taa", "Temporal antialiasing", "Karis14", make<TaaModule>},
     };

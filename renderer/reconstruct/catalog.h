@@ -13,8 +13,9 @@ struct ModuleEntry {
     const char* title;
     const char* paper;  ///< bibliography key of the README, or empty
     std::unique_ptr<Module> (*make)();
-    /// What is amiss with the parameters of one of its instances, in a sentence; empty: nothing. May be null.
-    std::string (*advice)(const Module&) = nullptr;
+    /// What is amiss with the parameters of one of its instances, or with the frame for it, in a sentence; empty:
+    /// nothing. May be null.
+    std::string (*advice)(const Module&, const FrameSampling&) = nullptr;
 };
 
 std::span<const ModuleEntry> moduleCatalog();

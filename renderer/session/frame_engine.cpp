@@ -247,7 +247,7 @@ bool FrameEngine::runModules(const FrameRequest& request, const Completed& next,
         frame.readsSignals[name] = current.failed || !current.module->reads().empty();
         frame.moduleBytes[name] = current.module->byteCount();
         frame.droppedPixels[name] = current.failed ? 0 : current.module->droppedPixels();
-        advise(name, *current.module);
+        advise(name, *current.module, asked);
         if (current.firstFrame < 0) current.firstFrame = request.frame;
         current.lastFrame = request.frame;
         current.parameters = next.document.list(name + ".");
@@ -262,10 +262,10 @@ bool FrameEngine::runModules(const FrameRequest& request, const Completed& next,
     return true;
 }
 
-/// What the method says of its parameters, once as long as it says the same.
-void FrameEngine::advise(const std::string& name, const Module& module) {
+/// What the method says of its parameters and the frame, once as long as it says the same.
+void FrameEngine::advise(const std::string& name, const Module& module, const FrameSampling& sampling) {
     const ModuleEntry& entry = findModule(name);
-    const std::string advice = entry.advice ? entry.advice(module) : "";
+    const std::string advice = entry.advice ? entry.advice(module, sampling) : "";
     if (!advice.empty() && advice_[name] != advice) log_.warning(name + ": " + advice);
     advice_[name] = advice;
 }

@@ -134,7 +134,7 @@ private:
                       StageTimer& timer, std::stop_token stop, const std::stop_token& sceneStop);
     bool runModules(const FrameRequest& request, const Completed& next, const CameraPose& previousCamera,
                     FrameOutput& frame, StageTimer& timer, std::stop_token stop);
-    void advise(const std::string& name, const Module& module);
+    void advise(const std::string& name, const Module& module, const FrameSampling& sampling);
     bool runModule(const std::string& name, const FrameContext& context, Image& out, FrameOutput& frame);
 
     MessageLog& log_;

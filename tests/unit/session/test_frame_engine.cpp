@@ -100,6 +100,24 @@ TEST(FrameEngine, AnotherShutterIsAnotherMean) {
     EXPECT_FALSE(e.draw(document, 5).changes.any()) << "a shutter that does not open";
 }
 
+TEST(FrameEngine, MethodsThatDoWithoutTheLensSaySo) {
+    for (const std::string module : {"stable", "supersampling", "martin2002", "svgf"}) {
+        Engine e;
+        Document document(tinyScene());
+        document.setText("view.0.module", module);
+        e.draw(document, 0);
+        EXPECT_TRUE(e.log.warnings().empty()) << module;
+        document.setText("camera.aperture", "0.1");
+        e.draw(document, 1), e.draw(document, 2);
+        document.setText("camera.shutter", "0.5");
+        e.draw(document, 3);
+        const std::string after = ": it sees through a pinhole, at the instant when the shutter opens";
+        const std::vector<std::string> told{module + ": does without camera.aperture" + after,
+                                            module + ": does without camera.aperture and camera.shutter" + after};
+        EXPECT_EQ(e.log.warnings(), module == "svgf" ? std::vector<std::string>() : told);
+    }
+}
+
 TEST(FrameEngine, AFrameOfTheSameNumberReplacesTheLast) {
     Engine replaced, straight;
     Document document(tinyScene()), other = document;
