@@ -60,15 +60,21 @@ Vec2 offsetAt(const CheckedFrame& frame, Pixel p) {
     return {at.x - static_cast<float>(p.x), at.y - static_cast<float>(p.y)};
 }
 
-/// Whether a float holds places on the surface to a few hundredths of a pixel: it is neither too far away for that nor
-/// seen edge-on, where the barycentrics of a sliver do not.
+/// Whether a float holds places on the surface to a few hundredths of a pixel: neither the place nor its triangle's
+/// corners, between which it is found, are too far away for that, nor is it seen edge-on, where the barycentrics of a
+/// sliver do not.
 bool holdsOffsets(const CheckedFrame& frame, Pixel p) {
     const Vec3 place = colourAt(frame.signals[Signal::Position], p);
     const CameraPose camera = frame.camera(p);
     const Vec3 away =
         camera.projection == Projection::Perspective ? glm::normalize(place - camera.position()) : camera.forward();
     if (std::abs(glm::dot(away, colourAt(frame.signals[Signal::GeometricNormal], p))) < 0.05f) return false;
-    const float scale = std::max(maxComponent(glm::abs(place)), frame.signals[Signal::Depth].at(0, p.x, p.y));
+    float scale = std::max(maxComponent(glm::abs(place)), frame.signals[Signal::Depth].at(0, p.x, p.y));
+    SurfacePoint corner = frame.point(p);
+    for (const Vec2 b : {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)}) {
+        corner.barycentrics = b;
+        scale = std::max(scale, maxComponent(glm::abs(frame.tracer.position(corner))));
+    }
     const Vec3 aside = place + Vec3(camera.worldFromCamera[0]) * (scale * 0x1p-22f);
     return glm::distance(Vec2(camera.project(aside)), Vec2(camera.project(place))) < 0.05f;
 }

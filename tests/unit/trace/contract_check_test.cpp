@@ -111,6 +111,22 @@ TEST_F(ContractCheck, HoldsWhereSurfacesCrossAnOrthographicCamerasPlane) {
         EXPECT_TRUE(finding.holds()) << finding.text();
 }
 
+// Where it is in a triangle of two kilometres, a float tells to a tenth of a millimetre.
+TEST_F(ContractCheck, HoldsCloseToLargeTriangles) {
+    TinyScene tiny;
+    tiny.add(floorMesh(2000), lambert(0.7f));
+    tiny.scene.environment.constant = Vec3(1);
+    tracer_.bind(tiny.pose());
+    for (const Jitter jitter : {Jitter::PerFrame, Jitter::PerPixel}) {
+        FrameSampling s = sampling(jitter);
+        s.camera = s.previousCamera = poseCamera(lookFrom(Vec3(31, 0.1f, 53), Vec3(31, 0, 52.7f), 10), kExtent);
+        Signals signals;
+        ASSERT_TRUE(tracer_.sample(s, signals));
+        for (const ContractFinding& finding : checkSignals(signals, s, tracer_, tracer_))
+            EXPECT_TRUE(finding.holds()) << finding.text();
+    }
+}
+
 TEST_F(ContractCheck, CountsPixels) {
     const FrameSampling s = sampling(Jitter::PerPixel);
     const Frame f = frame(s);
