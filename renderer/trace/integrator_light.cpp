@@ -57,6 +57,8 @@ void Integrator::sampleLight(PathBatch& batch, uint32_t index, const Surface& su
     pending.path = index;
     pending.contribution = path.throughput * sum;
     pending.delta = light.delta;
+    pending.diffuseBefore = path.diffuseBefore;
+    if (settings_.regularize) pending.specular = path.throughput * specular;
     pending.sky = light.sky;
     pending.skyPlace = light.skyPlace;
     if (vertex) batch.splits.push_back({diffuse, specular});
@@ -83,8 +85,7 @@ void Integrator::traceShadows(PathBatch& batch, int depth, bool coherent, TraceC
     } else {
         occludedRays(scene_.embree, batch.shadowRays, batch.blocked, coherence);
     }
-    // Widened walls scatter: their own light samples find the light.
-    if (scene_.tables.thinWalls && scene_.lights.hasDelta() && !settings_.regularize) passThinWalls(batch, counts);
+    if (scene_.tables.thinWalls && scene_.lights.hasDelta()) passThinWalls(batch, counts);
     addLights(batch, depth);
 }
 

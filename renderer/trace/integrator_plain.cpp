@@ -233,6 +233,8 @@ void Integrator::pendPlainLights(PathBatch& batch, int depth) const {
         pending.path = index;
         pending.contribution = lanes.lightContribution.get<Vec3>(i);
         pending.delta = scene_.lights.isDelta(entry);
+        pending.diffuseBefore = path.diffuseBefore;
+        if (settings_.regularize) pending.specular = path.throughput * lanes.lightSpecular.get<Vec3>(i);
         pending.sky = scene_.lights.isSky(entry);
         if (pending.sky) pending.skyPlace.x = batch.lights.skyU[i], pending.skyPlace.y = batch.lights.skyV[i];
         BatchRay& ray = batch.shadowRays.emplace_back();

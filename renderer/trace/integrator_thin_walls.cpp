@@ -1,4 +1,5 @@
 // Light without extent through panes: no path finds it by itself, so its shadow rays go on through smooth thin walls.
+#include "trace/albedo_table.h"
 #include "trace/integrator.h"
 
 namespace lumi {
@@ -7,9 +8,21 @@ namespace {
 
 constexpr int kMostWalls = 16;
 
+/// What of a light sample smooth walls let straight through.
+enum class Straight { All, Specular, Nothing };
+
+/// Walls that regularization widens scatter: their own light samples find the light, for what a path brings that meets
+/// them as such.
+Straight straightOf(const PendingLight& light, uint32_t sample, const PathSettings& settings) {
+    if (!settings.regularize || settings.leastRoughness(sample) < kTabledRoughness) return Straight::All;
+    if (settings.regularizeAfter == RegularizeAfter::Any || light.diffuseBefore) return Straight::Nothing;
+    return Straight::Specular;
+}
+
 /// A shadow ray that goes on: its place among the pending lights, and what the walls so far let through.
 struct Passing {
     size_t pending = 0;
+    Straight kind = Straight::All;
     Vec3 through{1};
 };
 
@@ -29,8 +42,11 @@ void Integrator::passThinWalls(PathBatch& batch, TraceCounts& counts) const {
     std::vector<Passing> passing;
     std::vector<BatchRay> rays;
     for (size_t i = 0; i < batch.pending.size(); ++i) {
-        if (!batch.blocked[i] || !batch.pending[i].delta) continue;
-        passing.push_back({i, Vec3(1)});
+        const PendingLight& light = batch.pending[i];
+        if (!batch.blocked[i] || !light.delta) continue;
+        const Straight kind = straightOf(light, batch.paths[light.path].sample, settings_);
+        if (kind == Straight::Nothing) continue;
+        passing.push_back({i, kind, Vec3(1)});
         rays.push_back(batch.shadowRays[i]);
     }
     std::vector<RawHit> hits;
@@ -44,9 +60,11 @@ void Integrator::passThinWalls(PathBatch& batch, TraceCounts& counts) const {
             Passing light = passing[i];
             if (!hits[i].valid()) {  // nothing stands before the light any more
                 batch.blocked[light.pending] = 0;
-                batch.pending[light.pending].contribution *= light.through;
+                PendingLight& pending = batch.pending[light.pending];
+                const bool withDiffuse = light.kind == Straight::All;
+                pending.contribution = (withDiffuse ? pending.contribution : pending.specular) * light.through;
                 if (batch.splits.empty()) continue;
-                batch.splits[light.pending].diffuse *= light.through;
+                batch.splits[light.pending].diffuse *= withDiffuse ? light.through : Vec3(0);
                 batch.splits[light.pending].specular *= light.through;
                 continue;
             }

@@ -21,6 +21,9 @@ inline uint32_t pathHash(const RandomKey& key, uint32_t seed) {
     return hashCombine(hashCombine(key.x, key.y), key.sample, seed);
 }
 
+/// Does it come from the eye of a perspective camera? Rays of orthographic ones have no eye, and begin outside of all.
+inline bool hasEye(const PathStart& start) { return start.ray.fromCamera && start.cone.spread > 0; }
+
 /// One path on its way.
 struct PathState {
     BatchRay ray;
@@ -42,10 +45,12 @@ struct PathState {
 /// A light sample that waits for its shadow ray.
 struct PendingLight {
     uint32_t path = 0;
-    Vec3 contribution{0};  ///< to the path, throughput included
-    bool delta = false;    ///< without extent
-    bool sky = false;      ///< it and its split are still to be multiplied by the sky's radiance at `skyPlace`
+    Vec3 contribution{0};        ///< to the path, throughput included
+    bool delta = false;          ///< without extent
+    bool diffuseBefore = false;  ///< of its path, on its way to the vertex
+    bool sky = false;            ///< it and its split are still to be multiplied by the sky's radiance at `skyPlace`
     Vec2 skyPlace{0};
+    Vec3 specular{0};  ///< part of the contribution; while lobes are regularized
 };
 
 /// What the vertex is told of it: radiance towards wo if nothing blocks it, MIS-weighted.

@@ -275,6 +275,43 @@ TEST(Regularize, WidensLobesOnlyAfterDiffuseOnes) {
     EXPECT_EQ(radianceAlong(tracer, Vec3(0, 1, 0), Vec3(1, -1, 0), 256, path).mean, before);
 }
 
+// Of panes, too: what does not meet a pane as a widened one has no other way to a light without extent behind it.
+TEST(Regularize, LeavesNoLightBehindPanes) {
+    Material pane = glass(0);
+    pane.thickness = 0;
+    for (const bool sun : {true, false}) {
+        TinyScene tiny;
+        tiny.add(floorMesh(), metal(0.9f, 0.5f));
+        tiny.add(rectangleMesh(2, 2, Facing::Y), pane, translation(Vec3(0, 1, 0)));
+        Light light;
+        light.type = sun ? LightType::Directional : LightType::Point;
+        light.irradiance = light.intensity = Vec3(4);
+        tiny.addLight(light, lookAt(Vec3(-0.4f, 2, 0), Vec3(0), Vec3(0, 0, 1)));
+        Tracer tracer;
+        tracer.bind(tiny.pose());
+        PathSettings path = plainPaths(3);
+        const auto seen = [&] {
+            return radianceAlong(tracer, Vec3(0.5f, 0.5f, 0), Vec3(-0.5f, -0.5f, 0), 20000, path).mean;
+        };
+        const double plain = seen();
+        EXPECT_GT(plain, 0.1);
+        path.regularize = true;
+        EXPECT_NEAR(seen(), plain, 1e-5 * plain) << "behind a rough mirror nothing is widened";
+        path.regularizeAfter = RegularizeAfter::Any;
+        path.regularizeRoughness = 0.02f;
+        EXPECT_NEAR(seen(), plain, 1e-3 * plain) << "all but the first sample meet a mirror";
+        path.regularizeRoughness = 0.3f, path.regularizeDecay = 0;
+        EXPECT_NEAR(seen(), plain, 0.25 * plain) << "widened";
+        // As diffuse as it shines: the widened pane brings one half, light samples the other.
+        tiny.scene.materials[0] = lambert(0.5f);
+        tracer.bind(tiny.pose());
+        path.regularizeAfter = RegularizeAfter::Diffuse;
+        const double widened = seen();
+        path.regularize = false;
+        EXPECT_NEAR(widened, seen(), 0.2 * seen());
+    }
+}
+
 // A mirror throws a point light onto the floor by paths that nothing samples; widened it does. With a decay the
 // widening ends at the sample whose least roughness is that of a mirror, here near the 8300th, and what it added falls
 // as 1/n.
