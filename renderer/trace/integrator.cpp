@@ -29,12 +29,11 @@ FirstHitJudge* judgeOf(std::span<PathObserver* const> observers) {
 }  // namespace
 
 Integrator::Integrator(const TraceScene& scene, const PathSettings& settings, uint32_t seed,
-                       std::span<PathObserver* const> observers, const MediumStack& around)
+                       std::span<PathObserver* const> observers, EyeMedia around)
     : scene_(scene),
       settings_(settings),
       seed_(seed),
-      around_(around),
-      absorptionAround_(absorptionIn(scene.tables, around)),
+      around_(std::move(around)),
       judge_(judgeOf(observers)),
       observers_(judge_ ? observers.subspan(1) : observers),
       needs_(joined(observers_)) {
@@ -72,7 +71,7 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
     batch.active.resize(count);
     batch.plain.count = 0;
     batch.nonFinite = 0;
-    batch.absorbs = !isBlack(absorptionAround_);
+    batch.absorbs = around_.isAnywhere();
     for (uint32_t i = 0; i < count; ++i) {
         const PathStart& start = starts[i];
         PathState& path = batch.paths[i];
@@ -85,9 +84,9 @@ bool Integrator::run(PathBatch& batch, std::span<const PathStart> starts, std::s
         path.stream = SampleStream(settings_.sampler, settings_.haltonLoop, seed_, start.key);
         path.hash = pathHash(start.key, seed_);
         path.slot = start.slot, path.sample = start.key.sample;
-        if (start.ray.fromCamera && start.cone.spread > 0) {  // from an eye
-            path.media = around_, path.absorption = absorptionAround_;
-            if (!firstPoints.empty()) path.throughput = transmittance(absorptionAround_, start.ray.tmax);
+        if (hasEye(start)) {
+            path.media = around_.at(start.ray.time), path.absorption = absorptionIn(scene_.tables, path.media);
+            if (!firstPoints.empty()) path.throughput = transmittance(path.absorption, start.ray.tmax);
         }
         batch.active[i] = i;
     }

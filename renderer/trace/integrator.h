@@ -3,6 +3,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "trace/eye_media.h"
 #include "trace/first_hit_judge.h"
 #include "trace/path_state.h"
 #include "trace/sampler.h"
@@ -25,7 +26,7 @@ class Integrator {
 public:
     /// `around` are the solids that camera rays begin in.
     Integrator(const TraceScene& scene, const PathSettings& settings, uint32_t seed,
-               std::span<PathObserver* const> observers, const MediumStack& around);
+               std::span<PathObserver* const> observers, EyeMedia around);
 
     /// Traces up to PathBatch::kMost paths. With `firstPoints` the first vertices are given: start i sees
     /// firstPoints[i] from along its ray's direction. `radiance` may be empty; `coherent` says that neighbouring starts
@@ -89,8 +90,7 @@ private:
     const TraceScene& scene_;
     const PathSettings settings_;
     const uint32_t seed_;
-    const MediumStack around_;
-    const Vec3 absorptionAround_;
+    const EyeMedia around_;
     FirstHitJudge* const judge_;
     const std::span<PathObserver* const> observers_;  ///< but the judge
     ObserverNeeds needs_;

@@ -25,6 +25,8 @@ public:
         for (; i < kMost; ++i) materials_[i] = i + 1 < kMost ? materials_[i + 1] : kNone;
     }
 
+    bool operator==(const MediumStack&) const = default;
+
 private:
     std::array<uint32_t, kMost> materials_{kNone, kNone, kNone, kNone};
 };

@@ -15,7 +15,6 @@
 #include "scene/reach.h"
 #include "trace/camera_starts.h"
 #include "trace/integrator.h"
-#include "trace/media_around.h"
 #include "trace/signals_observer.h"
 #include "trace/surface.h"
 #include "trace/trace_scene.h"
@@ -77,9 +76,6 @@ void gatherTexels(std::span<const TextureView> textures) {
                                   size_t(4) * static_cast<size_t>(level.width) * static_cast<size_t>(level.height));
 }
 
-/// Does it come from the eye of a perspective camera? Rays of orthographic ones have no eye, and begin outside of all.
-bool hasEye(const PathStart& start) { return start.ray.fromCamera && start.cone.spread > 0; }
-
 std::shared_ptr<const PosedScene> emptyScene() {
     auto posed = std::make_shared<PosedScene>();
     posed->scene = std::make_shared<const Scene>();
@@ -97,10 +93,6 @@ struct Tracer::Impl {
     void makeTables(const std::stop_token& stop = {}) {
         scene.tables = makeSceneTables(*scene.posed, scene.embree);
         scene.lights.build(*scene.posed, scene.tables, stop);
-    }
-    /// The solids that paths of cameras begin in, as far as they matter.
-    MediumStack aroundEye(const Vec3& eye, float time) const {
-        return scene.tables.absorbs ? mediaAround(scene, eye, time) : MediumStack();
     }
     void add(const TraceCounts& counts) {
         cameraRays.fetch_add(counts.cameraRays, std::memory_order_relaxed);
@@ -166,8 +158,7 @@ bool Tracer::sample(const FrameSampling& sampling, Signals& signals, std::stop_t
     observers.insert(observers.end(), extra.begin(), extra.end());
     PathSettings path = sampling.path;
     if (extra.empty() && isGeometryOnly(signals.available())) path.maxDepth = 0;  // no light is asked for
-    const Integrator integrator(impl_->scene, path, sampling.seed, observers,
-                                impl_->aroundEye(sampling.camera.position(), 0));
+    const Integrator integrator(impl_->scene, path, sampling.seed, observers, mediaAroundEye(impl_->scene, sampling));
 
     static_assert(SignalsObserver::kTile * SignalsObserver::kTile <= PathBatch::kMost &&
                   SignalsObserver::kTile <= kMostInStartRow);
@@ -202,13 +193,7 @@ bool Tracer::Impl::traceBatches(std::span<const PathStart> starts, std::span<con
                                 const PathSettings& settings, uint32_t seed, std::span<Vec3> radiance,
                                 std::span<PathObserver* const> observers, const std::stop_token& stop,
                                 std::span<const Hit> firstHits) {
-    // Lenses are small beside the solids that they are in: the first ray from an eye speaks for all.
-    MediumStack around;
-    if (const auto first = std::find_if(starts.begin(), starts.end(), hasEye); first != starts.end()) {
-        const Ray& ray = first->ray;
-        around = aroundEye(firstPoints.empty() ? ray.origin : ray.origin - ray.direction * ray.tmax, ray.time);
-    }
-    const Integrator integrator(scene, settings, seed, observers, around);
+    const Integrator integrator(scene, settings, seed, observers, mediaAroundEyes(scene, starts, !firstPoints.empty()));
     const auto count = static_cast<int64_t>(starts.size());
     std::atomic<int64_t> done{0};
     // A block ends where its last slot ends, so that no slot is in two batches at a time.
