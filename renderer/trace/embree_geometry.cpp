@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "math/hash.h"
+#include "trace/carried_steps.h"
 #include "trace/coverage.h"
 #include "trace/embree_parts.h"
 #include "trace/packets.h"
@@ -18,16 +19,14 @@ RTCScene EmbreeScene::newScene() const {
     return scene;
 }
 
-RTCGeometry EmbreeScene::newTriangles(std::span<const Vec3* const> positions, size_t vertexCount, const Mesh& mesh,
-                                      const Mat4* transform, bool filtered) const {
+RTCGeometry EmbreeScene::newTriangles(unsigned steps, size_t vertexCount, const Mesh& mesh, bool filtered,
+                                      const std::function<void(unsigned step, Vec3* vertices)>& place) const {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(positions.size()));
-    for (unsigned step = 0; step < positions.size(); ++step) {
+    rtcSetGeometryTimeStepCount(geometry, steps);
+    for (unsigned step = 0; step < steps; ++step) {
         auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, step,
                                                                     RTC_FORMAT_FLOAT3, sizeof(Vec3), vertexCount));
-        if (vertices && transform)
-            for (size_t i = 0; i < vertexCount; ++i) vertices[i] = transformPoint(*transform, positions[step][i]);
-        else if (vertices) std::memcpy(static_cast<void*>(vertices), positions[step], vertexCount * sizeof(Vec3));
+        if (vertices) place(step, vertices);
     }
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
                                sizeof(UVec3), mesh.triangles.size());
@@ -40,15 +39,36 @@ RTCGeometry EmbreeScene::newTriangles(std::span<const Vec3* const> positions, si
     return geometry;
 }
 
+RTCGeometry EmbreeScene::newMesh(const Mesh& mesh, bool filtered, const Mat4* transform) const {
+    const std::vector<Vec3>& rest = mesh.positions;
+    return newTriangles(1, rest.size(), mesh, filtered, [&](unsigned, Vec3* vertices) {
+        if (transform)
+            for (size_t i = 0; i < rest.size(); ++i) vertices[i] = transformPoint(*transform, rest[i]);
+        else std::copy(rest.begin(), rest.end(), vertices);
+    });
+}
+
 RTCGeometry EmbreeScene::newDeforming(const PosedScene& posed, uint32_t index, const Plan& plan) const {
     const PosedInstance& pose = posed.instances[index];
-    std::vector<const Vec3*> steps;
-    // What is flat at present stands in the world as it is when the shutter opens.
-    if (const ShutterTrack* track = plan.inWorld ? nullptr : pose.track())
-        for (const auto& shape : track->deformed) steps.push_back(shape->positions.data());
-    if (steps.empty()) steps.push_back(pose.deformed->positions.data());
-    return newTriangles(steps, pose.deformed->positions.size(), posed.mesh(index),
-                        plan.inWorld ? &pose.worldFromObject : nullptr, plan.filtered);
+    const Mesh& mesh = posed.mesh(index);
+    const ShutterTrack* track = pose.track();
+    const std::vector<Vec3>& still = pose.deformed ? pose.deformed->positions : mesh.positions;
+    const size_t count = still.size();
+    if (track && plan.inWorld) {
+        const unsigned steps = carriedSteps(*track);
+        return newTriangles(steps, count, mesh, plan.filtered, [&](unsigned step, Vec3* vertices) {
+            const CarriedStep carried(*track, still.data(), step, steps);
+            for (size_t i = 0; i < count; ++i) vertices[i] = carried.vertex(i);
+        });
+    }
+    const size_t shapes = track ? track->deformed.size() : 0;
+    const auto steps = static_cast<unsigned>(std::max<size_t>(shapes, 1));
+    return newTriangles(steps, count, mesh, plan.filtered, [&](unsigned step, Vec3* vertices) {
+        const std::vector<Vec3>& shape = shapes > 0 ? track->deformed[step]->positions : still;
+        std::copy(shape.begin(), shape.end(), vertices);
+        if (!plan.inWorld) return;
+        for (size_t i = 0; i < count; ++i) vertices[i] = transformPoint(pose.worldFromObject, vertices[i]);
+    });
 }
 
 RTCGeometry EmbreeScene::newBody(const PosedScene& posed, uint32_t index) const {
@@ -140,10 +160,20 @@ bool isSingleSided(const PosedScene& posed, uint32_t instance, uint32_t primitiv
     return isSingleSided(materials[index < materials.size() ? index : 0]);
 }
 
-/// Do the joints mirror it at one time and not at another?
-bool turnsOver(const ShutterTrack& track) {
-    return std::any_of(track.deformed.begin(), track.deformed.end(),
-                       [&](const auto& shape) { return shape->isMirrored() != track.deformed[0]->isMirrored(); });
+/// Where it is traced, in the world or in its own space: are its faces turned round at a time of the open shutter?
+bool isTurnedAt(const PosedInstance& pose, bool inWorld, float time) {
+    const ShutterTrack& track = *pose.track();
+    const bool byJoints =
+        track.deformed.empty() ? pose.deformed && pose.deformed->isMirrored() : track.isMirroredAt(time);
+    return byJoints != (inWorld && isMirroring(track.worldFromObjectAt(time)));
+}
+
+/// Are they at one time and not at another?
+bool turnsOver(const PosedInstance& pose, bool inWorld) {
+    if (!pose.track()) return false;
+    const auto& shapes = pose.track()->deformed;
+    return inWorld || std::any_of(shapes.begin(), shapes.end(),
+                                  [&](const auto& shape) { return shape->isMirrored() != shapes[0]->isMirrored(); });
 }
 
 }  // namespace
@@ -171,7 +201,7 @@ void EmbreeScene::findSides(const PosedScene& posed) {
         const PosedInstance& pose = posed.instances[i];
         const bool isPlaceMirrored = plan.inWorld && glm::determinant(glm::mat3(pose.worldFromObject)) < 0;
         sides_[i].turned = isPlaceMirrored != (pose.deformed && pose.deformed->isMirrored());
-        sides_[i].turnsOver = !plan.inWorld && pose.track() && turnsOver(*pose.track());
+        sides_[i].turnsOver = turnsOver(pose, plan.inWorld);
         sides_[i].single = isSingle(i);
         hidesBackFaces_ |= sides_[i].single;
     }
@@ -192,8 +222,9 @@ void EmbreeScene::filterBackFaces(const RTCFilterFunctionNArguments* arguments) 
         const float along = RTCHitN_Ng_x(hit, n, i) * RTCRayN_dir_x(ray, n, i) +
                             RTCHitN_Ng_y(hit, n, i) * RTCRayN_dir_y(ray, n, i) +
                             RTCHitN_Ng_z(hit, n, i) * RTCRayN_dir_z(ray, n, i);
-        const bool turned =
-            sides.turnsOver ? scene.posed_->instances[instance].track()->isMirroredAt(time) : sides.turned;
+        const bool turned = sides.turnsOver
+                                ? isTurnedAt(scene.posed_->instances[instance], scene.plans_[instance].inWorld, time)
+                                : sides.turned;
         const bool back = turned ? along < 0 : along > 0;
         if (back && isSingleSided(*scene.posed_, instance, RTCHitN_primID(hit, n, i))) arguments->valid[i] = 0;
     }

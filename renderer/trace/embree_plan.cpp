@@ -40,6 +40,11 @@ bool isSpeck(const Mat4& m) {
                        [](const glm::dvec3& c) { return glm::length(c) < 1e-38; });
 }
 
+bool isAlwaysSpeck(const PosedInstance& pose) {
+    const auto isAt = [](const Mat4& m) { return isSpeck(m); };
+    return isSpeck(pose.worldFromObject) && (!pose.track() || std::ranges::all_of(pose.track()->worldFromObject, isAt));
+}
+
 /// carriesRays() at all moments of the open shutter: between two of them a mirroring flattens too.
 bool alwaysCarriesRays(const PosedInstance& pose) {
     if (!carriesRays(pose.worldFromObject)) return false;
@@ -91,10 +96,12 @@ std::vector<EmbreeScene::Plan> EmbreeScene::makePlans(const PosedScene& posed, c
             plan.filtered =
                 instance.material >= 0 ? hasAlpha(scene, static_cast<uint32_t>(instance.material)) : use.hasAlpha;
             const bool instanced = pose.deformed || moves || use.count > 1;
-            // What is flat at present stands in the world as it is when the shutter opens.
+            // Of what is flat at some moment the triangles themselves are carried into the world, at each moment.
             plan.inWorld = !instanced || !alwaysCarriesRays(pose);
-            plan.mode = pose.deformed ? Mode::Deforming : plan.inWorld ? Mode::Direct : Mode::Instanced;
-            if (instanced && plan.inWorld && isSpeck(pose.worldFromObject)) plan.mode = Mode::None;
+            plan.mode = pose.deformed || (plan.inWorld && pose.track()) ? Mode::Deforming
+                        : plan.inWorld                                  ? Mode::Direct
+                                                                        : Mode::Instanced;
+            if (instanced && plan.inWorld && isAlwaysSpeck(pose)) plan.mode = Mode::None;
         }
     }
     return plans;

@@ -67,6 +67,10 @@ const Vec3* EmbreeScene::worldPositions(uint32_t instance) const {
         rtcGetGeometryBufferData(attachments_[instance].geometry, RTC_BUFFER_TYPE_VERTEX, 0));
 }
 
+bool EmbreeScene::isCarried(uint32_t instance) const {
+    return plans_[instance].mode == Mode::Deforming && plans_[instance].inWorld && posed_->instances[instance].track();
+}
+
 size_t EmbreeScene::byteCount() const {
     const size_t ofInstances = plans_.capacity() * sizeof(Plan) + attachments_.capacity() * sizeof(Attachment) +
                                sides_.capacity() * sizeof(Sides);
@@ -164,9 +168,7 @@ void EmbreeScene::makeAttachment(const PosedScene& posed, uint32_t index, RTCSce
         return;
     }
     if (plan.mode == Mode::Direct) {
-        const Mesh& mesh = posed.mesh(index);
-        const Vec3* positions = mesh.positions.data();
-        a.geometry = newTriangles({&positions, 1}, mesh.positions.size(), mesh, &pose.worldFromObject, plan.filtered);
+        a.geometry = newMesh(posed.mesh(index), plan.filtered, &pose.worldFromObject);
         return;
     }
     RTCScene target = meshScene;
@@ -198,9 +200,7 @@ void EmbreeScene::rebuild(const PosedScene& posed, std::vector<Plan> plans) {
         [&](int64_t i) {
             MeshScene& m = meshScenes_[static_cast<size_t>(i)];
             m.scene = newScene();
-            const Vec3* positions = m.mesh->positions.data();
-            attachSingle(m.scene,
-                         newTriangles({&positions, 1}, m.mesh->positions.size(), *m.mesh, nullptr, m.filtered));
+            attachSingle(m.scene, newMesh(*m.mesh, m.filtered, nullptr));
         },
         monitor_->stop);
     throwIfStopped();
@@ -248,8 +248,7 @@ void EmbreeScene::update(const PosedScene& posed, const PosedScene& before, std:
             const PosedInstance &pose = posed.instances[i], &earlier = before.instances[i];
             Attachment& a = attachments_[i];
             const bool inWorld = plan.inWorld || plans_[i].inWorld;
-            const bool otherTrack =
-                (plan.inWorld ? nullptr : pose.track()) != (plans_[i].inWorld ? nullptr : earlier.track());
+            const bool otherTrack = pose.track() != earlier.track();
             const bool reshaped = plan.mode == Mode::MovingBody && !(Body(posed, i) == Body(before, i));
             const bool otherPlace =
                 pose.worldFromObject != earlier.worldFromObject || plan.inWorld != plans_[i].inWorld;

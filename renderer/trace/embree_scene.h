@@ -54,6 +54,8 @@ public:
     RTCScene handle() const { return top_; }
     /// World-space vertices of an instance that was attached as triangles; null for all others.
     const Vec3* worldPositions(uint32_t instance) const;
+    /// Are the vertices of an instance that moves carried into the world? See carried_steps.h.
+    bool isCarried(uint32_t instance) const;
     /// Widest packet the device traces natively: 16, 8, 4 or 1.
     int packetWidth() const { return packetWidth_; }
     /// In what packets rays that go anywhere are fastest: the widest in small scenes, whose few nodes most rays meet
@@ -84,9 +86,11 @@ private:
     void update(const PosedScene& posed, const PosedScene& before, std::vector<Plan> plans);
     void attachAll(const PosedScene& posed);
     RTCScene newScene() const;
-    /// Triangles with vertices for each of equally spaced moments of the open shutter, mostly one.
-    RTCGeometry newTriangles(std::span<const Vec3* const> positions, size_t vertexCount, const Mesh& mesh,
-                             const Mat4* transform, bool filtered) const;
+    /// Triangles with vertices for each of equally spaced moments of the open shutter, which `place` writes.
+    RTCGeometry newTriangles(unsigned steps, size_t vertexCount, const Mesh& mesh, bool filtered,
+                             const std::function<void(unsigned step, Vec3* vertices)>& place) const;
+    /// At rest, in its own space or in that of `transform`.
+    RTCGeometry newMesh(const Mesh& mesh, bool filtered, const Mat4* transform) const;
     RTCGeometry newDeforming(const PosedScene& posed, uint32_t index, const Plan& plan) const;
     RTCGeometry newBody(const PosedScene& posed, uint32_t index) const;
     /// `meshScene` is that of the instance's mesh if it is Instanced.

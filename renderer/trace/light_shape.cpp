@@ -94,6 +94,7 @@ LightShape lightShape(const Light& light, const Mat4& worldFromLight) {
     shape.normal = unitOr(-(normalMatrix(worldFromLight) * Vec3(0, 0, 1)), Vec3(0, 0, -1));
     if (light.type != LightType::Sphere) {
         const bool isDisk = light.type == LightType::Disk;
+        shape.back = Vec3(worldFromLight[2]);
         shape.halfX = axisX * (isDisk ? light.radius : 0.5f * light.size.x);
         shape.halfY = axisY * (isDisk ? light.radius : 0.5f * light.size.y);
         shape.area = areaOf(shape);
@@ -132,9 +133,11 @@ LightShape shapeAt(std::span<const LightShape> shapes, float time) {
         shape.area = 4 * kPi * sqr(shape.radius);
         return shape;
     }
+    // A frame that mirrors on the way turns the light over.
+    shape.back = glm::mix(a.back, b.back, t);
     const Vec3 across = glm::cross(shape.halfX, shape.halfY);
     shape.area = areaOf(shape);
-    shape.normal = unitOr(glm::dot(across, a.normal) < 0 ? -across : across, a.normal);
+    shape.normal = unitOr(glm::dot(across, shape.back) > 0 ? -across : across, a.normal);
     shape.rightAngled = areOrthogonal(shape.halfX, shape.halfY);
     return shape;
 }

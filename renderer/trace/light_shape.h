@@ -19,6 +19,7 @@ struct LightShape {
     Vec3 centre{0};
     Vec3 halfX{1, 0, 0}, halfY{0, 1, 0};  ///< to the middle of an edge, or conjugate radii: a disk may be an ellipse
     Vec3 normal{0, 0, -1};                ///< unit; where the flat ones emit
+    Vec3 back{0, 0, 1};                   ///< of the flat ones: the frame's Z, on the side where they are black
     float radius = 1;                     ///< sphere, disk that isCircle(): world space
     float area = 1;                       ///< m^2, of the emitting side
     bool rightAngled = true;              ///< halfX and halfY are orthogonal

@@ -129,6 +129,8 @@ Lights::Triangle Lights::triangleAt(const Triangle& triangle, float time) const 
     Triangle moved = triangle;
     moved.corner = moving.corner(0);
     moved.edge1 = moving.corner(1) - moved.corner, moved.edge2 = moving.corner(2) - moved.corner;
+    moved.flags &= ~uint32_t(Triangle::kMirrored);
+    if (moving.instance().mirrored) moved.flags |= Triangle::kMirrored;
     return moved;
 }
 

@@ -102,6 +102,25 @@ LightBounds swept(const LightBounds& a, const LightBounds& b) {
     return both;
 }
 
+/// Two sides of a flat light at one moment; it emits to where side * cross(x, y) points.
+struct FlatLight {
+    Vec3 x, y;
+    float side = 1;
+};
+
+/// Bounds of a flat light at two moments and between them, where its sides change evenly: their cross product goes
+/// along a quadratic Bezier curve, whose directions lie within the cone around those of its three control points.
+LightBounds turned(const LightBounds& bounds, const FlatLight& from, const FlatLight& to) {
+    const Vec3 begin = from.side * glm::cross(from.x, from.y), end = to.side * glm::cross(to.x, to.y);
+    const Vec3 middle = from.side * (glm::cross(from.x, to.y) + glm::cross(to.x, from.y));
+    LightBounds between = bounds;
+    const bool isCone =
+        from.side == to.side && glm::dot(begin, middle) >= 0 && glm::dot(middle, end) >= 0 && glm::dot(begin, end) >= 0;
+    if (isCone) between.axis = unitOr(middle, unitOr(begin, between.axis));
+    between.cosSpread = isCone ? 1.0f : -1.0f;
+    return swept(bounds, between);
+}
+
 LightBounds bodyBounds(const LightShape& shape) {
     LightBounds bounds;
     if (shape.type == LightType::Sphere) {
@@ -116,6 +135,10 @@ LightBounds bodyBounds(const LightShape& shape) {
     bounds.axis = shape.normal;
     bounds.intensity = shape.area * shape.meanLuminance();
     return bounds;
+}
+
+FlatLight flatLight(const LightShape& shape) {
+    return {shape.halfX, shape.halfY, glm::dot(glm::cross(shape.halfX, shape.halfY), shape.normal) < 0 ? -1.0f : 1.0f};
 }
 
 }  // namespace
@@ -216,13 +239,25 @@ float Lights::mostArea(const Triangle& triangle) const {
 }
 
 LightBounds Lights::boundsOf(const Triangle& triangle, float intensity) const {
-    const bool mirrored = triangle.flags & Triangle::kMirrored, bothSides = triangle.flags & Triangle::kDoubleSided;
     const auto boundsAt = [&](const Triangle& t) {
+        const bool mirrored = t.flags & Triangle::kMirrored, bothSides = t.flags & Triangle::kDoubleSided;
         return triangleBounds(t.corner, t.edge1, t.edge2, mirrored, bothSides, intensity);
     };
+    const auto flat = [](const Triangle& t) {
+        return FlatLight{t.edge1, t.edge2, t.flags & Triangle::kMirrored ? -1.0f : 1.0f};
+    };
     LightBounds bounds = boundsAt(triangle);
-    const size_t moments = momentsOf(tables_->instances[triangle.instance]);
-    for (size_t m = 1; m < moments; ++m) bounds = swept(bounds, boundsAt(triangleAt(triangle, momentAt(m, moments))));
+    const InstanceRecord& instance = tables_->instances[triangle.instance];
+    const size_t moments = momentsOf(instance);
+    Triangle earlier = triangle;
+    for (size_t m = 1; m < moments; ++m) {
+        const Triangle later = triangleAt(triangle, momentAt(m, moments));
+        bounds = turned(swept(bounds, boundsAt(later)), flat(earlier), flat(later));
+        earlier = later;
+    }
+    // What moves and deforms at a time does not change evenly.
+    if (moments > 0 && instance.track->worldFromObject.size() > 1 && instance.track->deformed.size() > 1)
+        bounds.cosSpread = -1;
     return bounds;
 }
 
@@ -233,7 +268,12 @@ void Lights::addBodies(Collected& collected) {
         entries_.push_back({Kind::Body, static_cast<uint32_t>(i)});
         collected.weights.push_back(kPi * shape.area * shape.meanLuminance());
         LightBounds bounds = bodyBounds(shape);
-        for (const LightShape& later : tables_->bodies[i].shutterShapes) bounds = swept(bounds, bodyBounds(later));
+        const LightShape* earlier = &shape;
+        for (const LightShape& later : tables_->bodies[i].shutterShapes) {
+            bounds = swept(bounds, bodyBounds(later));
+            if (shape.type != LightType::Sphere) bounds = turned(bounds, flatLight(*earlier), flatLight(later));
+            earlier = &later;
+        }
         collected.bounds.push_back(bounds);
     }
 }

@@ -1,5 +1,7 @@
 #include "trace/moving_triangle.h"
 
+#include "trace/carried_steps.h"
+
 namespace lumi {
 namespace {
 
@@ -13,8 +15,9 @@ void take(const T*& source, const UVec3& t, T* copies) {
 
 }  // namespace
 
-MovingTriangle::MovingTriangle(const InstanceRecord& instance, const ShutterTrack& track, const UVec3& t, float time)
-    : instance_(instance) {
+MovingTriangle::MovingTriangle(const InstanceRecord& instance, uint32_t primitive, float time) : instance_(instance) {
+    const ShutterTrack& track = *instance.track;
+    const UVec3 t = instance.triangles[primitive];
     instance_.worldFromObject = track.worldFromObjectAt(time);
     instance_.normalFromObject = normalMatrix(instance_.worldFromObject);
     if (!track.deformed.empty()) instance_.turned = track.isMirroredAt(time);
@@ -40,6 +43,16 @@ MovingTriangle::MovingTriangle(const InstanceRecord& instance, const ShutterTrac
         if (!a.bitangents.empty())
             between(a.bitangents, b.bitangents, deformedBitangents_),
                 instance_.deformedBitangents = deformedBitangents_;
+    }
+    if (instance.carried) {
+        const unsigned steps = carriedSteps(track);
+        const TrackPlace place = trackPlace(steps, time);
+        const auto step = static_cast<unsigned>(place.first);
+        const CarriedStep from(track, instance.positions, step, steps),
+            to(track, instance.positions, place.fraction > 0 ? step + 1 : step, steps);
+        for (int c = 0; c < 3; ++c) positions_[c] = glm::mix(from.vertex(t[c]), to.vertex(t[c]), place.fraction);
+        instance_.positions = positions_;
+        instance_.inWorld = true;
     }
     take(instance_.restPositions, t, restPositions_);
     take(instance_.restNormals, t, restNormals_);

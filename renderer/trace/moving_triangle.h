@@ -7,17 +7,16 @@ namespace lumi {
 /// the three corners as its vertices 0, 1 and 2.
 class MovingTriangle {
 public:
-    MovingTriangle(const InstanceRecord& instance, uint32_t primitive, float time)
-        : MovingTriangle(instance, *instance.track, instance.triangles[primitive], time) {}
-    /// By another track, whose shapes have the instance's topology.
-    MovingTriangle(const InstanceRecord& instance, const ShutterTrack& track, const UVec3& triangle, float time);
+    MovingTriangle(const InstanceRecord& instance, uint32_t primitive, float time);
     MovingTriangle(const MovingTriangle&) = delete;
     MovingTriangle& operator=(const MovingTriangle&) = delete;
 
     const InstanceRecord& instance() const { return instance_; }
     static constexpr UVec3 kCorners{0, 1, 2};
     /// World-space corner 0, 1 or 2.
-    Vec3 corner(int c) const { return transformPoint(instance_.worldFromObject, positions_[c]); }
+    Vec3 corner(int c) const {
+        return instance_.inWorld ? positions_[c] : transformPoint(instance_.worldFromObject, positions_[c]);
+    }
 
 private:
     InstanceRecord instance_;

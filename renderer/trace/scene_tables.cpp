@@ -92,6 +92,7 @@ InstanceRecord makeInstance(const PosedScene& posed, const EmbreeScene& embree, 
     r.normalFromObject = pose.normalFromObject();
     r.mirrored = isMirroring(pose.worldFromObject);
     r.track = pose.track();
+    r.carried = r.track && embree.isCarried(index);
     if (!instance.mesh) return r;
     const Mesh& mesh = *instance.mesh;
     r.triangles = dataOrNull(mesh.triangles);

@@ -25,6 +25,7 @@ struct InstanceRecord {
     uint32_t triangleCount = 0;
     int body = -1;  ///< index into SceneTables::shapes if this is the body of a light
     bool inWorld = false;
+    bool carried = false;   ///< while the shutter is open its vertices go as carried_steps.h says
     bool turned = false;    ///< joints mirror it: front faces turn clockwise in the space of `positions`
     bool mirrored = false;  ///< front faces turn clockwise in the world
     float objectScale = 0;  ///< largest |coordinate| that the transform's products reach: bounds rounding errors

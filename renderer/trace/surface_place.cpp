@@ -38,8 +38,8 @@ Vec3 surfacePosition(const SceneTables& tables, const SurfacePoint& point) {
     if (r.body >= 0) return tables.bodies[static_cast<size_t>(r.body)].at(point.time).position(point.barycentrics);
     if (r.track) {
         const MovingTriangle moving(r, point.primitive, point.time);
-        const InstanceRecord& m = moving.instance();
-        return transformPoint(m.worldFromObject, placeAmong(m.positions, MovingTriangle::kCorners, point.barycentrics));
+        const Vec3 corners[] = {moving.corner(0), moving.corner(1), moving.corner(2)};
+        return placeAmong(corners, MovingTriangle::kCorners, point.barycentrics);
     }
     const Vec3 p = placeAmong(r.positions, r.triangles[point.primitive], point.barycentrics);
     return r.inWorld ? p : transformPoint(r.worldFromObject, p);

@@ -4,9 +4,9 @@
 
 #include <cstring>
 
-#include "math/hash.h"
 #include "support/image_tests.h"
 #include "support/light_scene.h"
+#include "support/posed_frames.h"
 
 namespace lumi {
 namespace {
@@ -15,17 +15,6 @@ using namespace test;
 
 constexpr Extent2 kExtent{20, 14};
 constexpr float kExposure = 0.8f;  ///< seconds that the shutter is open
-const SignalSet kMoments{Signal::Noisy, Signal::SampleVariance};
-
-float number(uint32_t a, uint32_t b) { return unitFloat(hashCombine(a, b)); }
-
-AnimationChannel channel(int node, AnimatedProperty property, int components, std::vector<float> values) {
-    AnimationChannel c;
-    c.node = node, c.property = property, c.components = components;
-    c.times = {0, 1};
-    c.values = std::move(values);
-    return c;
-}
 
 /// Makes the node of the last instance or light an animated one.
 int movingNode(TinyScene& tiny, int node, std::vector<float> from, std::vector<float> turn) {
@@ -106,28 +95,6 @@ FrameSampling shutterFrame(int spp, const PathSettings& path, uint32_t seed) {
     return sampling;
 }
 
-/// Adds frames up as one of so many samples.
-class Mean {
-public:
-    void add(const Signals& frame) {
-        const Image& image = frame[Signal::Noisy];
-        moments_.resize(image.size());
-        for (size_t i = 0; i < image.size(); ++i) moments_[i].add(image.data()[i]);
-    }
-    Signals signals() const {
-        Signals s;
-        s.reset(kExtent, kMoments, static_cast<int>(moments_[0].count()));
-        for (size_t i = 0; i < moments_.size(); ++i) {
-            s[Signal::Noisy].data()[i] = static_cast<float>(moments_[i].mean());
-            s[Signal::SampleVariance].data()[i] = static_cast<float>(moments_[i].sampleVariance());
-        }
-        return s;
-    }
-
-private:
-    std::vector<RunningMoments> moments_;
-};
-
 TEST(Shutter, ConvergesToTheMeanOfPosedFrames) {
     const auto scene = everythingMoves().pose()->scene;
     Tracer tracer;
@@ -144,7 +111,7 @@ TEST(Shutter, ConvergesToTheMeanOfPosedFrames) {
         }
         tracer.bind(poseScene(scene, {0, kExposure, 0}));
         ASSERT_TRUE(tracer.sample(shutterFrame(600, path, 7), blurred));
-        const Signals posed = mean.signals();
+        const Signals posed = mean.signals(kExtent);
         EXPECT_GE(agreeingShare(blurred, posed), 0.9975);
         EXPECT_LT(std::abs(biasInSigmas(blurred, posed)), 4);
         // It is not the still image that agrees.
@@ -300,8 +267,8 @@ TEST(Shutter, AMovingCameraBlursWhatStandsStill) {
     FrameSampling sampling = shutterFrame(400, plainPaths(2), 7);
     for (int i = 0; i <= 16; ++i) sampling.cameraTrack.push_back(poseCamera(at(static_cast<float>(i) / 16), kExtent));
     ASSERT_TRUE(tracer.sample(sampling, blurred));
-    EXPECT_GE(agreeingShare(blurred, mean.signals()), 0.9975);
-    EXPECT_LT(std::abs(biasInSigmas(blurred, mean.signals())), 4);
+    EXPECT_GE(agreeingShare(blurred, mean.signals(kExtent)), 0.9975);
+    EXPECT_LT(std::abs(biasInSigmas(blurred, mean.signals(kExtent))), 4);
 }
 
 TEST(Lens, ConvergesToTheMeanOfPinholes) {
@@ -369,7 +336,7 @@ TEST(Lens, ConvergesToTheMeanOfPinholes) {
                                             static_cast<int>(i) / kExtent.width) = radiance[i][c];
             mean.add(frame);
         }
-        const Signals pinholes = mean.signals();
+        const Signals pinholes = mean.signals(kExtent);
         EXPECT_GE(agreeingShare(blurred, pinholes), 0.9975) << blades;
         EXPECT_LT(std::abs(biasInSigmas(blurred, pinholes)), 4) << blades;
     }
