@@ -79,7 +79,7 @@ private:
     static float spreadOf(bool diffuse, float roughness);
     void addLights(PathBatch& batch, int depth) const;
     Vec3 straightThrough(const Surface& surface, const Vec3& direction) const;
-    void passThinWalls(PathBatch& batch, TraceCounts& counts) const;
+    void passThinWalls(PathBatch& batch, int depth, TraceCounts& counts) const;
     void traceShadows(PathBatch& batch, int depth, bool coherent, TraceCounts& counts) const;
     LightReceiver receiverAt(const PathState& path, const Surface& surface) const;
     float misWeight(float pdf, float otherPdf) const;

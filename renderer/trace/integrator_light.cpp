@@ -85,7 +85,7 @@ void Integrator::traceShadows(PathBatch& batch, int depth, bool coherent, TraceC
     } else {
         occludedRays(scene_.embree, batch.shadowRays, batch.blocked, coherence);
     }
-    if (scene_.tables.thinWalls && scene_.lights.hasDelta()) passThinWalls(batch, counts);
+    if (scene_.tables.thinWalls && scene_.lights.hasDelta()) passThinWalls(batch, depth, counts);
     addLights(batch, depth);
 }
 

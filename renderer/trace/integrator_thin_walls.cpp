@@ -12,9 +12,10 @@ constexpr int kMostWalls = 16;
 enum class Straight { All, Specular, Nothing };
 
 /// Walls that regularization widens scatter: their own light samples find the light, for what a path brings that meets
-/// them as such.
-Straight straightOf(const PendingLight& light, uint32_t sample, const PathSettings& settings) {
+/// them as such. After the last scattering at `depth` no path does.
+Straight straightOf(const PendingLight& light, uint32_t sample, int depth, const PathSettings& settings) {
     if (!settings.regularize || settings.leastRoughness(sample) < kTabledRoughness) return Straight::All;
+    if (depth + 1 >= settings.maxDepth) return Straight::All;
     if (settings.regularizeAfter == RegularizeAfter::Any || light.diffuseBefore) return Straight::Nothing;
     return Straight::Specular;
 }
@@ -38,13 +39,13 @@ Vec3 Integrator::straightThrough(const Surface& surface, const Vec3& direction) 
     return bsdf.isWindow() ? bsdf.albedo(Lobe::SpecularTransmission) : Vec3(0);
 }
 
-void Integrator::passThinWalls(PathBatch& batch, TraceCounts& counts) const {
+void Integrator::passThinWalls(PathBatch& batch, int depth, TraceCounts& counts) const {
     std::vector<Passing> passing;
     std::vector<BatchRay> rays;
     for (size_t i = 0; i < batch.pending.size(); ++i) {
         const PendingLight& light = batch.pending[i];
         if (!batch.blocked[i] || !light.delta) continue;
-        const Straight kind = straightOf(light, batch.paths[light.path].sample, settings_);
+        const Straight kind = straightOf(light, batch.paths[light.path].sample, depth, settings_);
         if (kind == Straight::Nothing) continue;
         passing.push_back({i, kind, Vec3(1)});
         rays.push_back(batch.shadowRays[i]);

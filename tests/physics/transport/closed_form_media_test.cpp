@@ -309,6 +309,18 @@ TEST(Regularize, LeavesNoLightBehindPanes) {
         const double widened = seen();
         path.regularize = false;
         EXPECT_NEAR(widened, seen(), 0.2 * seen());
+        // After the last scattering nothing meets a pane, whatever it were.
+        path.regularize = true;
+        path.maxDepth = 1;
+        const double direct = seen();
+        tiny.add(rectangleMesh(2, 2, Facing::Y), pane, translation(Vec3(0, 1.5f, 0)));
+        tracer.bind(tiny.pose());
+        path.maxDepth = 2;
+        const double throughTwo = seen();
+        path.regularize = false;
+        EXPECT_NEAR(throughTwo, seen(), 0.2 * seen());
+        path.maxDepth = 1;
+        EXPECT_NEAR(direct, seen() / 0.96, 0.01 * direct) << "but for the second pane";
     }
 }
 
