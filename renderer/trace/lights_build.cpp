@@ -233,8 +233,10 @@ Lights::Triangle Lights::makeTriangle(uint32_t instance, uint32_t primitive) con
 float Lights::mostArea(const Triangle& triangle) const {
     const auto areaOf = [](const Triangle& t) { return 0.5f * glm::length(glm::cross(t.edge1, t.edge2)); };
     float most = areaOf(triangle);
-    const size_t moments = momentsOf(tables_->instances[triangle.instance]);
-    for (size_t m = 1; m < moments; ++m) most = std::max(most, areaOf(triangleAt(triangle, momentAt(m, moments))));
+    const size_t moments = momentsOf(tables_->instances[triangle.instance]), halves = 2 * moments;
+    // It may be largest between two moments at which it is nothing.
+    for (size_t half = 1; half + 1 < halves; ++half)
+        most = std::max(most, areaOf(triangleAt(triangle, momentAt(half, halves - 1))));
     return most;
 }
 
@@ -266,14 +268,19 @@ void Lights::addBodies(Collected& collected) {
     for (size_t i = 0; i < tables_->bodies.size(); ++i) {
         const LightShape& shape = tables_->bodies[i].shape;
         entries_.push_back({Kind::Body, static_cast<uint32_t>(i)});
-        collected.weights.push_back(kPi * shape.area * shape.meanLuminance());
+        const std::vector<LightShape>& track = tables_->bodies[i].shutterShapes;
         LightBounds bounds = bodyBounds(shape);
-        const LightShape* earlier = &shape;
-        for (const LightShape& later : tables_->bodies[i].shutterShapes) {
+        float mostArea = shape.area;
+        LightShape earlier = shape;
+        // It may be largest between two moments at which it is nothing.
+        for (size_t half = 1; half + 1 < 2 * track.size(); ++half) {
+            const LightShape later = shapeAt(track, momentAt(half, 2 * track.size() - 1));
+            mostArea = std::max(mostArea, later.area);
             bounds = swept(bounds, bodyBounds(later));
-            if (shape.type != LightType::Sphere) bounds = turned(bounds, flatLight(*earlier), flatLight(later));
-            earlier = &later;
+            if (shape.type != LightType::Sphere) bounds = turned(bounds, flatLight(earlier), flatLight(later));
+            earlier = later;
         }
+        collected.weights.push_back(kPi * mostArea * shape.meanLuminance());
         collected.bounds.push_back(bounds);
     }
 }
