@@ -39,6 +39,18 @@ bool strays(const Mat4& a, const Mat4& truth, const Mat4& b, float part, const B
     return false;
 }
 
+/// The same where a joint goes straight from a to b while morph weights change by `change` in all. Vertices go along a
+/// parabola then, J(t) (x + w(t) d), part (1 - part) times the product of both changes off the straight way; d is taken
+/// for the box's size.
+bool straysByBoth(const Mat4& a, const Mat4& b, float change, float part, const Bounds3& box) {
+    if (a == b) return false;
+    const Mat3 turn = Mat3(b) - Mat3(a);
+    const Vec3 size = box.size();
+    const float reach = glm::length(turn[0]) * size.x + glm::length(turn[1]) * size.y + glm::length(turn[2]) * size.z;
+    const float allowed = kMostShutterStray * std::max(transformedBounds(box, a).radius(), 1e-6f);
+    return part * (1 - part) * change * reach > allowed;
+}
+
 /// The same for all that moves or bends an instance.
 bool strays(const Instance& instance, const PosedMoment& a, const PosedMoment& truth, const PosedMoment& b, float part,
             const Bounds3& meshBounds) {
@@ -47,11 +59,16 @@ bool strays(const Instance& instance, const PosedMoment& a, const PosedMoment& t
         return true;
     const auto weightsA = morphWeightsOf(instance, a), weights = morphWeightsOf(instance, truth),
                weightsB = morphWeightsOf(instance, b);
-    for (size_t i = 0; i < weights.size() && i < weightsA.size() && i < weightsB.size(); ++i)
+    float change = 0;
+    for (size_t i = 0; i < weights.size() && i < weightsA.size() && i < weightsB.size(); ++i) {
         if (std::abs(glm::mix(weightsA[i], weightsB[i], part) - weights[i]) > kMostShutterStray) return true;
+        change += std::abs(weightsB[i] - weightsA[i]);
+    }
     const auto jointsA = jointsOf(instance, a), joints = jointsOf(instance, truth), jointsB = jointsOf(instance, b);
-    return anyJoint(instance, joints.size(),
-                    [&](size_t j) { return strays(jointsA[j], joints[j], jointsB[j], part, meshBounds); });
+    return anyJoint(instance, joints.size(), [&](size_t j) {
+        return strays(jointsA[j], joints[j], jointsB[j], part, meshBounds) ||
+               (change > 0 && straysByBoth(jointsA[j], jointsB[j], change, part, meshBounds));
+    });
 }
 
 /// A light's frame, see PosedLight.

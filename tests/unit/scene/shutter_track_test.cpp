@@ -136,6 +136,53 @@ TEST(ShutterTrack, AStraightWayTakesTwoSegmentsHoweverManyKeysItHas) {
     EXPECT_TRUE(std::is_sorted(turns.begin(), turns.end()));
 }
 
+/// The card carried by a joint whose scale goes from 1 to `scale` while it morphs, both evenly.
+std::shared_ptr<Scene> bentCard(float scale, bool morphs) {
+    auto scene = movingCard({0, 1}, {Vec3(0), Vec3(0)});
+    auto mesh = std::make_shared<Mesh>(*scene->instances[0].mesh);
+    mesh->skin.first = {0, 1, 2, 3};
+    mesh->skin.joint = {0, 0, 0};
+    mesh->skin.weight = {1, 1, 1};
+    MorphTarget target;
+    target.positions = {Vec3(0.4f, 0, 0), Vec3(0), Vec3(0.2f, 0.2f, 0)};
+    mesh->morphTargets = {target};
+    scene->nodes.resize(2);
+    scene->nodes[0].morphWeights = {0};
+    scene->instances[0].mesh = mesh;
+    scene->instances[0].skin = 0;
+    scene->skins.push_back({{1}, {Mat4(1)}});
+    AnimationChannel scales, weights;
+    scales.node = 1, scales.property = AnimatedProperty::Scale;
+    scales.times = weights.times = {0, 1};
+    scales.values = {1, 1, 1, scale, 1, 1};
+    weights.node = 0, weights.property = AnimatedProperty::MorphWeights, weights.components = 1;
+    weights.values = {0, morphs ? 1.0f : 0.0f};
+    scene->animations = {{{scales, weights}, 1, false}};
+    return scene;
+}
+
+// Vertices go along parabolas then, though the joint and the weight go straight.
+TEST(ShutterTrack, FollowsWhatMorphsWhileJointsCarryIt) {
+    for (const bool morphs : {false, true})
+        for (const float scale : {-1.0f, 0.2f, 2.0f}) {
+            const auto scene = bentCard(scale, morphs);
+            const auto posed = poseScene(scene, {.open = 0, .close = 1, .previousOpen = 0});
+            const ShutterTrack& track = *posed->instances[0].track();
+            for (int i = 0; i <= 100; ++i) {
+                const float time = static_cast<float>(i) / 100;
+                const auto truth =
+                    poseScene(scene, {.open = time, .close = time, .previousOpen = time})->instances[0].deformed;
+                const TrackPlace at = trackPlace(track.deformed.size(), time);
+                const auto &from = *track.deformed[at.first], &to = *track.deformed[at.first + (at.fraction > 0)];
+                for (size_t v = 0; v < 3; ++v) {
+                    const Vec3 found = glm::mix(from.positions[v], to.positions[v], at.fraction);
+                    ASSERT_LT(glm::distance(found, truth->positions[v]), 1e-3f) << scale << " at " << time;
+                }
+            }
+            EXPECT_LE(track.deformed.size(), morphs ? 33u : 3u);
+        }
+}
+
 TEST(ShutterTrack, TurnsAreTheKeysInsideTheOpenShutter) {
     const auto scene = movingCard({0, 0.25f, 1}, std::vector<Vec3>(3, Vec3(0)), true);
     EXPECT_TRUE(shutterTurns(*scene, 0.3f, 0.9f).empty());
