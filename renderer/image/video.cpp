@@ -26,8 +26,11 @@ namespace {
 
 constexpr int kMaxSide = 16384;
 
-/// Starts `arguments` (found in $PATH) with these standard input and error. Its error number, or 0.
-int spawn(const std::vector<std::string>& arguments, int input, int messages, pid_t& process) {
+constexpr int kVideoDescriptor = 3;  ///< what ffmpeg knows its output as
+
+/// Starts `arguments` (found in $PATH) with these standard input and error, and `video` as kVideoDescriptor. Its error
+/// number, or 0.
+int spawn(const std::vector<std::string>& arguments, int input, int messages, int video, pid_t& process) {
     std::vector<char*> argv;
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
@@ -36,6 +39,7 @@ int spawn(const std::vector<std::string>& arguments, int input, int messages, pi
     posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, messages, STDERR_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, video, kVideoDescriptor);
     // Signals that this program waits for itself end the other one as they end any.
     sigset_t none;
     sigemptyset(&none);
@@ -49,7 +53,9 @@ int spawn(const std::vector<std::string>& arguments, int input, int messages, pi
     return code;
 }
 
-std::vector<std::string> command(const fs::path& path, Extent2 extent, double fps) {
+/// The output is an open file, not a name: an ffmpeg that outlives this program makes no file where the next run has
+/// cleared away.
+std::vector<std::string> command(const std::string& container, Extent2 extent, double fps) {
     return {"ffmpeg", "-hide_banner", "-loglevel", "error", "-f", "rawvideo", "-pixel_format", "rgb24", "-video_size",
             fmt::format("{}x{}", extent.width, extent.height), "-framerate", fmt::format("{:.6g}", fps), "-i", "pipe:0",
             "-an", "-vf",
@@ -58,8 +64,8 @@ std::vector<std::string> command(const fs::path& path, Extent2 extent, double fp
             "-c:v", "libx264", "-preset", "medium", "-crf", "16", "-colorspace", "bt709", "-color_primaries", "bt709",
             "-color_trc", "iec61966-2-1", "-color_range", "tv",
             // A fixed number of threads and no version strings: the same bytes on every machine.
-            "-threads", "4", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-movflags", "+faststart", "-y",
-            "file:" + path.string()};
+            "-threads", "4", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-movflags", "+faststart", "-f",
+            container, "-y", fmt::format("file:/proc/self/fd/{}", kVideoDescriptor)};
 }
 
 /// What the child wrote, in one line.
@@ -102,17 +108,22 @@ VideoPipe::VideoPipe(const fs::path& path, Extent2 extent, double fps) : path_(p
              path.string(), "", ""});
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), ignored);
 
+    const std::string extension = path.extension().string();
+    partial_ = path.parent_path() / fmt::format("{}.{}.part{}", path.stem().string(), getpid(), extension);
+    const int video = open(partial_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (video < 0) fail(std::string("cannot be written (") + std::strerror(errno) + ")");
     // A socket rather than a pipe: writing to one whose reader is gone can be told not to raise SIGPIPE.
-    int ends[2];
+    int ends[2], code = 0;
     messages_ = memfd_create("ffmpeg-messages", MFD_CLOEXEC);
-    if (messages_ < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-        fail(std::string("cannot start ffmpeg (") + std::strerror(errno) + ")");
-    input_ = ends[0];
-    // The extension chooses the container, so it stays last.
-    partial_ =
-        path.parent_path() / fmt::format("{}.{}.part{}", path.stem().string(), getpid(), path.extension().string());
-    const int code = spawn(command(partial_, extent, fps), ends[1], messages_, process_);
-    close(ends[1]);
+    if (messages_ < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+        code = errno;
+    } else {
+        input_ = ends[0];
+        const std::string container = extension.substr(std::min<size_t>(1, extension.size()));
+        code = spawn(command(container, extent, fps), ends[1], messages_, video, process_);
+        close(ends[1]);
+    }
+    close(video);
     if (code != 0) {
         process_ = -1;
         fail(std::string("cannot start ffmpeg (") + std::strerror(code) + ")");

@@ -1,5 +1,6 @@
 """render --frames: series and videos that go on after an interruption, and cameras that follow a path."""
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -25,6 +26,12 @@ class Sequence(CommandTest):
 
     def files(self):
         return [name for name in super().files() if name != "walk.json"]
+
+    def wait_for(self, name):
+        begun = time.time()
+        while not (self.folder / name).exists():
+            self.assertLess(time.time() - begun, 60, f"{name} never came")
+            time.sleep(0.01)
 
     def render(self, *arguments):
         return self.good("render", *WALK, *arguments, "--json").json
@@ -135,6 +142,28 @@ class Sequence(CommandTest):
             (frames / name).write_bytes(b"kept")
         self.good(*command, "b.mp4")
         self.assertEqual(sorted(path.name for path in frames.iterdir()), others)
+
+    @unittest.skipUnless(shutil.which("ffmpeg"), "no ffmpeg program")
+    def test_an_ffmpeg_that_outlives_its_program_leaves_nothing(self):
+        (self.folder / "bin").mkdir()
+        slow = self.folder / "bin/ffmpeg"
+        slow.write_text(f"""#!/bin/sh
+touch bin/begun
+until [ -e bin/go ]; do sleep 0.02; done
+{shutil.which("ffmpeg")} "$@"
+touch bin/ended
+""")
+        slow.chmod(0o755)
+        command = ["render", *WALK, "--module", "none", "--frames", 3, "--quiet", "--out", "a.mp4"]
+        process = subprocess.Popen([PROGRAM, *map(str, command)], cwd=self.folder,
+                                   env={**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}"})
+        self.wait_for("bin/begun")
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        self.good(*command)
+        (self.folder / "bin/go").touch()
+        self.wait_for("bin/ended")
+        self.assertEqual(self.files(), ["a.mp4", "bin"])
 
     def test_a_camera_path(self):
         path = {"format": "lumiscope-camera-path", "version": 1, "interpolation": "linear",
